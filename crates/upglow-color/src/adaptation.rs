@@ -1,0 +1,79 @@
+//! Chromatic adaptation from the white of an RGB space to the white of the illuminant.
+
+use std::fmt;
+use std::str::FromStr;
+
+use crate::{Matrix3, Xyz};
+
+/// What happens to colors when the space's white is not the illuminant's.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Adaptation {
+    /// RGB (1, 1, 1) is the perfect diffuser under the illuminant: Bradford's cone responses are
+    /// scaled from one white to the other.
+    #[default]
+    Bradford,
+    /// The space's own matrix, unchanged: R = G = B is then not a flat spectrum.
+    None,
+}
+
+/// Bradford's sharpened cone responses. # Source: [lam], as in ICC.1:2022, annex E.
+const LMS_FROM_XYZ: Matrix3 =
+    Matrix3([[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]]);
+
+impl Adaptation {
+    /// The matrix that takes tristimulus values seen under `source` to those seen under `target`.
+    pub fn target_from_source(self, source: Xyz, target: Xyz) -> Matrix3 {
+        match self {
+            Self::None => Matrix3::IDENTITY,
+            Self::Bradford => {
+                let (from, to) = (LMS_FROM_XYZ * source.0, LMS_FROM_XYZ * target.0);
+                let gains = Matrix3::diagonal([0, 1, 2].map(|k| to[k] / from[k]));
+                let xyz_from_lms = LMS_FROM_XYZ.inverse().expect("the constant is regular");
+                xyz_from_lms * gains * LMS_FROM_XYZ
+            }
+        }
+    }
+}
+
+impl fmt::Display for Adaptation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Bradford => "bradford",
+            Self::None => "none",
+        })
+    }
+}
+
+/// A name that is no chromatic adaptation.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("unknown adaptation {found:?}, expected bradford or none")]
+pub struct UnknownAdaptation {
+    /// The name given.
+    pub found: String,
+}
+
+impl FromStr for Adaptation {
+    type Err = UnknownAdaptation;
+
+    fn from_str(name: &str) -> Result<Self, Self::Err> {
+        [Self::Bradford, Self::None]
+            .into_iter()
+            .find(|a| a.to_string() == name)
+            .ok_or_else(|| UnknownAdaptation { found: name.into() })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bradford_takes_one_white_to_the_other() {
+        let (d60, d65) = (Xyz([0.952_65, 1.0, 1.008_83]), Xyz([0.950_43, 1.0, 1.088_80]));
+        let adapted = Adaptation::Bradford.target_from_source(d60, d65) * d60.0;
+        for k in 0..3 {
+            // Rounding only.
+            assert!((adapted[k] - d65.0[k]).abs() < 1e-14);
+        }
+    }
+}

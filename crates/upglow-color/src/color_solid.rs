@@ -1,0 +1,260 @@
+//! What no material can beat: the convex body of the colors that any surface can show.
+
+use crate::{Colorimetry, Xyz};
+
+/// The set of colors of all reflectances, or of all fluorescent materials, under one light.
+///
+/// The set is convex; it is known by its support: for each direction the color that lies furthest
+/// out, which a material that is all-or-nothing at each wavelength shows.
+#[derive(Clone, Debug)]
+pub struct ColorSolid {
+    bands: Vec<Band>,
+    fluorescent: bool,
+}
+
+/// One band of incident light.
+#[derive(Clone, Copy, Debug)]
+struct Band {
+    wavelength_nm: f64,
+    irradiance: f64,
+    matching: [f64; 3],
+}
+
+/// The point of a [`ColorSolid`] nearest to a color.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nearest {
+    /// The nearest color that the solid holds.
+    pub color: Xyz,
+    /// Euclidean distance to it in XYZ; 0 for a color inside.
+    pub distance: f64,
+}
+
+/// Colors closer than this in XYZ count as inside. Larger hides real gaps (one ΔE00 is about 1e-3
+/// near white); smaller calls white, which is a corner of the solid, unreachable by rounding.
+const ON_THE_SURFACE: f64 = 1e-9;
+
+/// Where the search stops: the nearest point is known to this relative gap between the distance
+/// found and the lower bound that the support proves.
+const RELATIVE_GAP: f64 = 1e-9;
+
+/// Enough for any polytope here: the search takes 10 to 40 steps. It bounds rounding stalls.
+const STEP_LIMIT: usize = 500;
+
+impl ColorSolid {
+    /// The colors of all reflectances 0 ≤ r(λ) ≤ 1: the solid of [macadam].
+    ///
+    /// # Source
+    ///
+    /// [macadam]; as a support function, h(n) = Σ max(0, n·wᵢ).
+    pub fn reflectance(colorimetry: &Colorimetry) -> Self {
+        Self::new(colorimetry, false)
+    }
+
+    /// The colors of all ideal fluorescent materials: each photon of a band goes, as at most one
+    /// photon, to that band or to any longer wavelength.
+    ///
+    /// In energy, light moved from λi to λo keeps the share λi/λo:
+    /// h(n) = Σ E(λi) · max(0, max over λo ≥ λi of (λi/λo) n·x̄ȳz̄(λo)).
+    pub fn fluorescence(colorimetry: &Colorimetry) -> Self {
+        Self::new(colorimetry, true)
+    }
+
+    fn new(colorimetry: &Colorimetry, fluorescent: bool) -> Self {
+        let bands = colorimetry
+            .grid()
+            .wavelengths_nm()
+            .zip(colorimetry.irradiance())
+            .zip(colorimetry.matching())
+            .map(|((wavelength_nm, &irradiance), &matching)| Band {
+                wavelength_nm,
+                irradiance,
+                matching,
+            })
+            .collect();
+        Self { bands, fluorescent }
+    }
+
+    /// The color of the solid that lies furthest in direction `n`.
+    pub fn support(&self, n: [f64; 3]) -> Xyz {
+        let mut sum = [0.0; 3];
+        // The outgoing color of one unit of photons times wavelength, best so far from the red end.
+        let mut best = [0.0; 3];
+        for band in self.bands.iter().rev() {
+            let per_photon = band.matching.map(|m| m / band.wavelength_nm);
+            if !self.fluorescent {
+                best = [0.0; 3];
+            }
+            if dot(n, per_photon) > dot(n, best) {
+                best = per_photon;
+            }
+            let photons = band.irradiance * band.wavelength_nm;
+            (0..3).for_each(|k| sum[k] += photons * best[k]);
+        }
+        Xyz(sum)
+    }
+
+    /// Whether some material of this kind shows `color`.
+    pub fn contains(&self, color: Xyz) -> bool {
+        self.search(color, Goal::Verdict).distance <= ON_THE_SURFACE
+    }
+
+    /// The color nearest to `color` that some material of this kind shows.
+    pub fn nearest(&self, color: Xyz) -> Nearest {
+        self.search(color, Goal::Distance)
+    }
+
+    /// Walks towards the nearest point; each step asks the support for a point further on, and
+    /// keeps the corners of the simplex that the nearest point so far lies in.
+    ///
+    /// # Source
+    ///
+    /// [gilbert]; the nearest point of a simplex by trying all its faces, which is exact for up to
+    /// four corners.
+    fn search(&self, color: Xyz, goal: Goal) -> Nearest {
+        let relative = |p: Xyz| [0, 1, 2].map(|k| p.0[k] - color.0[k]);
+        let mut simplex = vec![relative(self.support([1.0; 3]))];
+        let mut nearest = simplex[0];
+        for _ in 0..STEP_LIMIT {
+            let square = dot(nearest, nearest);
+            if square <= ON_THE_SURFACE * ON_THE_SURFACE {
+                break;
+            }
+            let next = relative(self.support(nearest.map(|v| -v)));
+            let bound = dot(nearest, next);
+            if square - bound <= RELATIVE_GAP * square || (goal == Goal::Verdict && bound > 0.0) {
+                break;
+            }
+            simplex.push(next);
+            let (point, corners) = nearest_of_simplex(&simplex);
+            if dot(point, point) >= square {
+                break;
+            }
+            (nearest, simplex) = (point, corners);
+        }
+        let distance = dot(nearest, nearest).sqrt();
+        let color = Xyz([0, 1, 2].map(|k| color.0[k] + nearest[k]));
+        Nearest { color, distance: if distance <= ON_THE_SURFACE { 0.0 } else { distance } }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Goal {
+    /// Inside or outside: stop at the first plane that separates.
+    Verdict,
+    /// The distance itself.
+    Distance,
+}
+
+/// The point nearest to the origin of the convex hull of at most four points, and the corners of
+/// the face it lies in.
+fn nearest_of_simplex(corners: &[[f64; 3]]) -> ([f64; 3], Vec<[f64; 3]>) {
+    let faces = (1..1_u32 << corners.len()).filter_map(|mask| {
+        let face: Vec<[f64; 3]> =
+            (0..corners.len()).filter(|i| mask >> i & 1 == 1).map(|i| corners[i]).collect();
+        nearest_of_plane(&face).map(|point| (point, face))
+    });
+    let square = |p: &([f64; 3], Vec<[f64; 3]>)| dot(p.0, p.0);
+    faces
+        .min_by(|p, q| square(p).total_cmp(&square(q)))
+        .expect("each single corner is a face that holds its own nearest point")
+}
+
+/// The point nearest to the origin of the plane through a face; `None` if it is outside the face
+/// or the face is degenerate.
+fn nearest_of_plane(face: &[[f64; 3]]) -> Option<[f64; 3]> {
+    let edges: Vec<[f64; 3]> = face[1..].iter().map(|p| sub(*p, face[0])).collect();
+    let weights = solve_gram(&edges, face[0])?;
+    let first = 1.0 - weights.iter().sum::<f64>();
+    if first < 0.0 || weights.iter().any(|&w| w < 0.0) {
+        return None;
+    }
+    let moved =
+        |k: usize| face[0][k] + edges.iter().zip(&weights).map(|(e, w)| w * e[k]).sum::<f64>();
+    Some([0, 1, 2].map(moved))
+}
+
+/// Weights uⱼ with eᵢ · (origin + Σ uⱼ eⱼ) = 0 for all edges eᵢ; `None` for dependent edges.
+fn solve_gram(edges: &[[f64; 3]], origin: [f64; 3]) -> Option<Vec<f64>> {
+    let n = edges.len();
+    let mut rows: Vec<Vec<f64>> = edges
+        .iter()
+        .map(|e| edges.iter().map(|f| dot(*e, *f)).chain([-dot(*e, origin)]).collect())
+        .collect();
+    for pivot in 0..n {
+        let diagonal = rows[pivot][pivot];
+        // Rounding of the elimination: below this share of the edge's own length nothing is left.
+        if diagonal <= 1e-14 * dot(edges[pivot], edges[pivot]) {
+            return None;
+        }
+        let pivot_row = rows[pivot].clone();
+        for (_, row) in rows.iter_mut().enumerate().filter(|(r, _)| *r != pivot) {
+            let factor = row[pivot] / diagonal;
+            row.iter_mut().zip(&pivot_row).for_each(|(v, p)| *v -= factor * p);
+        }
+    }
+    Some((0..n).map(|i| rows[i][n] / rows[i][i]).collect())
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Contract, Grid, LinearRgb};
+    use proptest::prelude::*;
+
+    fn solids() -> (Colorimetry, ColorSolid, ColorSolid) {
+        let colorimetry = Contract::default().on(Grid::FIT);
+        let (r, f) =
+            (ColorSolid::reflectance(&colorimetry), ColorSolid::fluorescence(&colorimetry));
+        (colorimetry, r, f)
+    }
+
+    #[test]
+    fn white_black_and_gray_are_reflectances() {
+        let (colorimetry, reflectance, _) = solids();
+        for v in [0.0, 0.3, 1.0] {
+            assert!(reflectance.contains(colorimetry.xyz_from_rgb(LinearRgb([v; 3]))), "{v}");
+        }
+        assert!(!reflectance.contains(colorimetry.xyz_from_rgb(LinearRgb([1.001; 3]))));
+    }
+
+    #[test]
+    fn pure_green_is_shown_by_nothing_and_the_distance_says_how_far() {
+        let (colorimetry, reflectance, fluorescence) = solids();
+        let green = colorimetry.xyz_from_rgb(LinearRgb([0.0, 1.0, 0.0]));
+        let (r, f) = (reflectance.nearest(green), fluorescence.nearest(green));
+        assert!(r.distance > f.distance && f.distance > 1e-3, "{r:?} {f:?}");
+        assert!(fluorescence.contains(f.color) || fluorescence.nearest(f.color).distance < 1e-7);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
+        #[test]
+        fn a_sampled_reflectance_is_inside_and_beyond_the_support_is_outside(
+            samples in prop::collection::vec(0.0..1.0, Grid::FIT.len()),
+            n in prop::array::uniform3(-1.0..1.0),
+        ) {
+            prop_assume!(dot(n, n) > 0.01);
+            let (colorimetry, reflectance, fluorescence) = solids();
+            let color = colorimetry.xyz_from_reflectance(samples);
+            prop_assert!(reflectance.contains(color) && fluorescence.contains(color));
+            for solid in [&reflectance, &fluorescence] {
+                let edge = solid.support(n);
+                let beyond = Xyz([0, 1, 2].map(|k| edge.0[k] + 0.01 * n[k]));
+                prop_assert!(!solid.contains(beyond));
+                let nearest = solid.nearest(beyond);
+                // The edge point itself is one candidate; the plane through it proves the rest.
+                prop_assert!(nearest.distance <= 0.01 * dot(n, n).sqrt() + 1e-9);
+                prop_assert!((nearest.distance - 0.01 * dot(n, n).sqrt()).abs() < 1e-6);
+            }
+        }
+    }
+}

@@ -1,0 +1,162 @@
+//! A contract on a wavelength grid: the numbers that every later sum needs.
+
+use crate::{Contract, Grid, Illuminant, Lab, LinearRgb, Matrix3, Observer, Xyz, lab_from_xyz};
+
+/// White, matrices and integration weights of a [`Contract`] on a [`Grid`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Colorimetry {
+    grid: Grid,
+    irradiance: Vec<f64>,
+    matching: Vec<[f64; 3]>,
+    weights: Vec<[f64; 3]>,
+    white: Xyz,
+    xyz_from_rgb: Matrix3,
+    rgb_from_xyz: Matrix3,
+}
+
+impl Colorimetry {
+    pub(crate) fn new(contract: &Contract, grid: Grid) -> Self {
+        let matching = contract.observer.on(grid);
+        let light: Vec<f64> =
+            grid.wavelengths_nm().map(|nm| contract.illuminant.power().at(nm)).collect();
+        let luminance: f64 = light.iter().zip(&matching).map(|(l, m)| l * m[1]).sum();
+        let irradiance: Vec<f64> = light.iter().map(|l| l / luminance).collect();
+        let weights: Vec<[f64; 3]> =
+            irradiance.iter().zip(&matching).map(|(e, m)| m.map(|v| e * v)).collect();
+        let white = Xyz(column_sums(&weights));
+        let space_white = Xyz::from_chromaticity(contract.space.white());
+        let xyz_from_rgb = contract.adaptation.target_from_source(space_white, white)
+            * contract.space.xyz_from_rgb();
+        let rgb_from_xyz = xyz_from_rgb.inverse().expect("a space's primaries make a triangle");
+        Self { grid, irradiance, matching, weights, white, xyz_from_rgb, rgb_from_xyz }
+    }
+
+    /// The grid of every sum.
+    pub fn grid(&self) -> Grid {
+        self.grid
+    }
+
+    /// Irradiance of each band, scaled so that the perfect diffuser has Y = 1, `[wavelength]`.
+    pub fn irradiance(&self) -> &[f64] {
+        &self.irradiance
+    }
+
+    /// x̄, ȳ, z̄, `[wavelength][x̄ ȳ z̄]`.
+    pub fn matching(&self) -> &[[f64; 3]] {
+        &self.matching
+    }
+
+    /// What a reflectance of 1 in each band adds to X, Y, Z, `[wavelength][X Y Z]`.
+    pub fn weights(&self) -> &[[f64; 3]] {
+        &self.weights
+    }
+
+    /// The perfect diffuser.
+    pub fn white(&self) -> Xyz {
+        self.white
+    }
+
+    /// The color that linear RGB stands for.
+    pub fn xyz_from_rgb(&self, rgb: LinearRgb) -> Xyz {
+        Xyz(self.xyz_from_rgb * rgb.0)
+    }
+
+    /// Linear RGB of a color.
+    pub fn rgb_from_xyz(&self, xyz: Xyz) -> LinearRgb {
+        LinearRgb(self.rgb_from_xyz * xyz.0)
+    }
+
+    /// The matrix behind [`Colorimetry::rgb_from_xyz`].
+    pub fn rgb_from_xyz_matrix(&self) -> Matrix3 {
+        self.rgb_from_xyz
+    }
+
+    /// CIELAB of a color relative to [`Colorimetry::white`].
+    pub fn lab_from_xyz(&self, xyz: Xyz) -> Lab {
+        lab_from_xyz(xyz, self.white)
+    }
+
+    /// The color of a reflectance sampled on the grid.
+    pub fn xyz_from_reflectance(&self, reflectance: impl IntoIterator<Item = f64>) -> Xyz {
+        let mut sum = [0.0; 3];
+        for (r, w) in reflectance.into_iter().zip(&self.weights) {
+            (0..3).for_each(|k| sum[k] += r * w[k]);
+        }
+        Xyz(sum)
+    }
+
+    /// The same eye under another light that brings as much power as this one, in 300 to 830 nm.
+    ///
+    /// Unlike a contract of its own, whose white is always Y = 1, this compares lights of equal
+    /// power: under an ultraviolet lamp a white wall is nearly black and fluorescence is not.
+    #[must_use]
+    pub fn relit(&self, observer: &Observer, light: &Illuminant) -> Self {
+        let contract = Contract {
+            illuminant: light.clone(),
+            observer: observer.clone(),
+            ..Contract::default()
+        };
+        let relit = Self::new(&contract, self.grid);
+        let power = |c: &Self| c.irradiance.iter().sum::<f64>();
+        let scale = power(self) / power(&relit);
+        Self {
+            irradiance: relit.irradiance.iter().map(|e| e * scale).collect(),
+            weights: relit.weights.iter().map(|w| w.map(|v| v * scale)).collect(),
+            white: Xyz(relit.white.0.map(|v| v * scale)),
+            ..self.clone()
+        }
+    }
+}
+
+fn column_sums(rows: &[[f64; 3]]) -> [f64; 3] {
+    rows.iter().fold([0.0; 3], |sum, row| [0, 1, 2].map(|k| sum[k] + row[k]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Adaptation;
+
+    /// Rounding only: sums of a hundred numbers near 0.01.
+    const ROUNDING: f64 = 1e-12;
+
+    fn assert_close(found: [f64; 3], expected: [f64; 3], tolerance: f64) {
+        for k in 0..3 {
+            assert!((found[k] - expected[k]).abs() < tolerance, "{found:?} {expected:?}");
+        }
+    }
+
+    #[test]
+    fn under_bradford_one_is_the_perfect_diffuser_in_every_space() {
+        for name in crate::RgbSpace::names() {
+            let space = crate::RgbSpace::named(name).unwrap();
+            let colorimetry = Contract { space, ..Contract::default() }.on(Grid::FIT);
+            let white = colorimetry.xyz_from_rgb(LinearRgb([1.0; 3]));
+            assert_close(white.0, colorimetry.white().0, ROUNDING);
+        }
+    }
+
+    #[test]
+    fn without_adaptation_the_diffuser_has_the_published_acescg_values() {
+        let contract = Contract { adaptation: Adaptation::None, ..Contract::default() };
+        let rgb = contract.on(Grid::FIT);
+        let diffuser = rgb.rgb_from_xyz(rgb.white());
+        // Five printed digits.
+        assert_close(diffuser.0, [0.977_48, 1.002_79, 1.079_19], 1e-5);
+    }
+
+    #[test]
+    fn relit_by_its_own_light_nothing_changes() {
+        let contract = Contract::default();
+        let colorimetry = contract.on(Grid::FIT);
+        let relit = colorimetry.relit(&contract.observer, &contract.illuminant);
+        assert_close(relit.white().0, colorimetry.white().0, ROUNDING);
+    }
+
+    #[test]
+    fn rgb_survives_the_way_to_xyz_and_back() {
+        let colorimetry = Contract::default().on(Grid::FIT);
+        let rgb = LinearRgb([0.9, -0.2, 1.7]);
+        assert_close(colorimetry.rgb_from_xyz(colorimetry.xyz_from_rgb(rgb)).0, rgb.0, ROUNDING);
+    }
+}

@@ -1,0 +1,95 @@
+//! Wavelength grids.
+
+/// Equally spaced wavelengths, both ends included.
+///
+/// An integral over a grid is the sum of the samples times [`Grid::step_nm`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Grid {
+    first_nm: u32,
+    last_nm: u32,
+    step_nm: u32,
+}
+
+/// Why three numbers are no wavelength grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum GridError {
+    /// The step is zero or does not divide the range.
+    #[error(
+        "grid {first_nm} to {last_nm} nm in steps of {step_nm} nm, expected first < last and a step > 0 that divides the range"
+    )]
+    Step {
+        /// First wavelength, nm.
+        first_nm: u32,
+        /// Last wavelength, nm.
+        last_nm: u32,
+        /// Step, nm.
+        step_nm: u32,
+    },
+}
+
+impl Grid {
+    /// 300, 301 … 830 nm: the grid on which every spectrum is stored and on which results are verified.
+    pub const FINE: Self = Self { first_nm: 300, last_nm: 830, step_nm: 1 };
+    /// 300, 305 … 830 nm: the grid of the sums in a fit.
+    pub const FIT: Self = Self { first_nm: 300, last_nm: 830, step_nm: 5 };
+
+    /// The grid from `first_nm` to `last_nm`.
+    ///
+    /// # Errors
+    ///
+    /// [`GridError::Step`] if `step_nm` is zero or does not lead from first to last.
+    pub const fn try_new(first_nm: u32, last_nm: u32, step_nm: u32) -> Result<Self, GridError> {
+        if first_nm >= last_nm || step_nm == 0 || !(last_nm - first_nm).is_multiple_of(step_nm) {
+            return Err(GridError::Step { first_nm, last_nm, step_nm });
+        }
+        Ok(Self { first_nm, last_nm, step_nm })
+    }
+
+    /// First wavelength, nm.
+    pub const fn first_nm(self) -> u32 {
+        self.first_nm
+    }
+
+    /// Last wavelength, nm.
+    pub const fn last_nm(self) -> u32 {
+        self.last_nm
+    }
+
+    /// Distance of neighbors, nm.
+    pub const fn step_nm(self) -> u32 {
+        self.step_nm
+    }
+
+    /// How many wavelengths; at least 2.
+    #[expect(clippy::len_without_is_empty, reason = "a grid is never empty")]
+    pub const fn len(self) -> usize {
+        ((self.last_nm - self.first_nm) / self.step_nm) as usize + 1
+    }
+
+    /// The wavelengths in ascending order, nm.
+    pub fn wavelengths_nm(self) -> impl ExactSizeIterator<Item = f64> + Clone {
+        let Self { first_nm, step_nm, .. } = self;
+        (0..self.len()).map(move |i| f64::from(first_nm) + f64::from(step_nm) * i as f64)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_fit_grid_has_107_wavelengths_from_300_to_830() {
+        let nm: Vec<f64> = Grid::FIT.wavelengths_nm().collect();
+        assert_eq!((nm.len(), nm[0], nm[1], nm[106]), (107, 300.0, 305.0, 830.0));
+        assert_eq!(Grid::FINE.len(), 531);
+    }
+
+    #[test]
+    fn a_step_that_misses_the_end_is_refused() {
+        assert!(Grid::try_new(400, 700, 7).is_err());
+        assert!(Grid::try_new(400, 700, 0).is_err());
+        assert!(Grid::try_new(700, 400, 10).is_err());
+        assert_eq!(Grid::try_new(400, 700, 10).unwrap().len(), 31);
+    }
+}

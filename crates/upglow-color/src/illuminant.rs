@@ -1,0 +1,188 @@
+//! Light sources.
+
+use crate::tables::daylight::{DAYLIGHT_COMPONENTS, DAYLIGHT_FIRST_NM, DAYLIGHT_STEP_NM};
+use crate::{Grid, Spectrum, SpectrumCsvError, read_columns};
+
+/// A named light: relative spectral power on [`Grid::FINE`], 300 to 830 nm.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Illuminant {
+    name: String,
+    power: Spectrum,
+}
+
+/// Why a light is not one.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum IlluminantError {
+    /// No built-in light has this name.
+    #[error("unknown illuminant {found:?}, expected {}, or a CSV file", Illuminant::NAMES.join(", "))]
+    Unknown {
+        /// The name given.
+        found: String,
+    },
+    /// The CSV text is not a spectrum.
+    #[error(transparent)]
+    Csv(#[from] SpectrumCsvError),
+    /// The light is dark where the eye sees.
+    #[error("no power between 360 and 830 nm, expected some")]
+    Invisible,
+}
+
+/// Second radiation constant of the International Temperature Scale of 1931 in which D65 was
+/// defined (1.4380e-2 m·K) and today's (1.438776877e-2 m·K): correlated color temperatures named
+/// before 1968 scale by their ratio.
+const C2_NOW_OVER_C2_THEN: f64 = 1.438_776_877 / 1.438_0;
+
+/// Where daylights and illuminant A are 100, nm.
+const REFERENCE_NM: f64 = 560.0;
+
+impl Illuminant {
+    /// The built-in lights.
+    pub const NAMES: [&str; 6] = ["D65", "D60", "D55", "D50", "A", "E"];
+
+    /// The built-in light of this name, in any case.
+    ///
+    /// # Errors
+    ///
+    /// [`IlluminantError::Unknown`] lists the names there are.
+    pub fn named(name: &str) -> Result<Self, IlluminantError> {
+        match name.to_ascii_uppercase().as_str() {
+            "D65" => Ok(Self::daylight("D65", 6500.0)),
+            "D60" => Ok(Self::daylight("D60", 6000.0)),
+            "D55" => Ok(Self::daylight("D55", 5500.0)),
+            "D50" => Ok(Self::daylight("D50", 5000.0)),
+            "A" => Ok(Self::a()),
+            "E" => Ok(Self::from_fn("E", |_| 100.0)),
+            _ => Err(IlluminantError::Unknown { found: name.into() }),
+        }
+    }
+
+    /// The light in CSV text with the header `wavelength_nm,power`, 300 to 830 nm.
+    ///
+    /// # Errors
+    ///
+    /// [`IlluminantError`] if the text is no spectrum or has no visible power.
+    pub fn from_csv(name: &str, text: &str) -> Result<Self, IlluminantError> {
+        let [power] = read_columns(text, ["power"], false)?;
+        Self::from_spectrum(name, &power)
+    }
+
+    /// A light from its relative power.
+    ///
+    /// # Errors
+    ///
+    /// [`IlluminantError::Invisible`] if it has no power from 360 to 830 nm.
+    pub fn from_spectrum(name: &str, power: &Spectrum) -> Result<Self, IlluminantError> {
+        let power = power.resampled(Grid::FINE);
+        let first_visible = 60;
+        if power.values()[first_visible..].iter().all(|&p| p <= 0.0) {
+            return Err(IlluminantError::Invisible);
+        }
+        Ok(Self { name: name.into(), power })
+    }
+
+    /// A lamp with one Gaussian line, as ultraviolet LEDs have: `peak_nm`, and full width at half
+    /// maximum `fwhm_nm`, both nm; its power is 100 at the peak.
+    pub fn line(name: &str, peak_nm: f64, fwhm_nm: f64) -> Self {
+        let shape = |nm: f64| (-4.0 * 2f64.ln() * ((nm - peak_nm) / fwhm_nm).powi(2)).exp();
+        Self::from_fn(name, |nm| 100.0 * shape(nm))
+    }
+
+    /// A phase of daylight of the given nominal correlated color temperature.
+    ///
+    /// # Source
+    ///
+    /// [cie015], section 4.1.2; M1 and M2 rounded to three decimals as CIE does for its tables.
+    fn daylight(name: &str, nominal_cct_k: f64) -> Self {
+        let t = nominal_cct_k * C2_NOW_OVER_C2_THEN;
+        let [x, y] = daylight_chromaticity(t);
+        let m = 0.0241 + 0.2562 * x - 0.7341 * y;
+        let to_three_decimals = |v: f64| (v * 1000.0).round() / 1000.0;
+        let m1 = to_three_decimals((-1.3515 - 1.7703 * x + 5.9114 * y) / m);
+        let m2 = to_three_decimals((0.0300 - 31.4424 * x + 30.0717 * y) / m);
+        let grid = Grid::try_new(DAYLIGHT_FIRST_NM, Grid::FINE.last_nm(), DAYLIGHT_STEP_NM)
+            .expect("the table is on a grid");
+        let values =
+            DAYLIGHT_COMPONENTS.iter().map(|[s0, s1, s2]| s0 + m1 * s1 + m2 * s2).collect();
+        let power = Spectrum::new(grid, values).expect("the table fills the grid");
+        let scale = 100.0 / power.at(REFERENCE_NM);
+        Self { name: name.into(), power: power.resampled(Grid::FINE).scaled(scale) }
+    }
+
+    /// Incandescent light.
+    ///
+    /// # Source
+    ///
+    /// [cie015], section 4.1.1, equation 1: 2848 K with the second constant 1.435e7 nm·K.
+    fn a() -> Self {
+        let planck = |nm: f64| nm.powi(-5) / ((1.435e7 / (2848.0 * nm)).exp() - 1.0);
+        Self::from_fn("A", |nm| 100.0 * planck(nm) / planck(REFERENCE_NM))
+    }
+
+    fn from_fn(name: &str, power: impl Fn(f64) -> f64) -> Self {
+        let values = Grid::FINE.wavelengths_nm().map(power).collect();
+        let power = Spectrum::new(Grid::FINE, values).expect("the formula is finite everywhere");
+        Self { name: name.into(), power }
+    }
+
+    /// The name that files state.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Relative spectral power on [`Grid::FINE`].
+    pub fn power(&self) -> &Spectrum {
+        &self.power
+    }
+}
+
+impl Default for Illuminant {
+    /// CIE standard illuminant D65.
+    fn default() -> Self {
+        Self::daylight("D65", 6500.0)
+    }
+}
+
+/// Chromaticity of daylight of correlated color temperature `t`, K; 4000 to 25000 K.
+///
+/// # Source
+///
+/// [cie015], section 4.1.2, equations 6 to 8.
+fn daylight_chromaticity(t: f64) -> [f64; 2] {
+    let x = if t <= 7000.0 {
+        0.244_063 + 0.099_11e3 / t + 2.967_8e6 / t.powi(2) - 4.607_0e9 / t.powi(3)
+    } else {
+        0.237_040 + 0.247_48e3 / t + 1.901_8e6 / t.powi(2) - 2.006_4e9 / t.powi(3)
+    };
+    [x, -3.000 * x * x + 2.870 * x - 0.275]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn d65_has_the_power_below_380_nm_that_the_standard_gives_it() {
+        let d65 = Illuminant::default();
+        let ultraviolet: f64 = d65.power().values()[..80].iter().sum();
+        let share = ultraviolet / d65.power().values().iter().sum::<f64>();
+        assert!((share - 0.065).abs() < 0.001, "{share}");
+    }
+
+    #[test]
+    fn names_are_found_in_any_case_and_others_listed() {
+        assert_eq!(Illuminant::named("d50").unwrap().name(), "D50");
+        assert_eq!(
+            Illuminant::named("F11").unwrap_err().to_string(),
+            "unknown illuminant \"F11\", expected D65, D60, D55, D50, A, E, or a CSV file"
+        );
+    }
+
+    #[test]
+    fn a_light_without_visible_power_is_refused() {
+        let mut values = vec![0.0; Grid::FINE.len()];
+        values[10] = 1.0;
+        let dark = Spectrum::new(Grid::FINE, values).unwrap();
+        assert_eq!(Illuminant::from_spectrum("dark", &dark), Err(IlluminantError::Invisible));
+    }
+}

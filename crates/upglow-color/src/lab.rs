@@ -1,0 +1,96 @@
+//! CIELAB.
+
+use crate::{Matrix3, Xyz};
+
+/// CIELAB coordinates relative to a white.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Lab {
+    /// Lightness; 0 is black, 100 the white.
+    pub l: f64,
+    /// Green (negative) to red (positive).
+    pub a: f64,
+    /// Blue (negative) to yellow (positive).
+    pub b: f64,
+}
+
+/// (6/29)³: below it the cube root gives way to a straight line.
+const LINEAR_BELOW: f64 = 216.0 / 24389.0;
+/// Slope of that line: (29/3)³ / 116.
+const LINEAR_SLOPE: f64 = 24389.0 / 27.0 / 116.0;
+
+/// The coordinates of `xyz` where `white` is the white.
+///
+/// Negative tristimulus values follow the straight branch, so wide-gamut primaries have a Lab.
+///
+/// # Source
+///
+/// [cie015], section 8.2.1.
+pub fn lab_from_xyz(xyz: Xyz, white: Xyz) -> Lab {
+    let [fx, fy, fz] = [0, 1, 2].map(|k| compress(xyz.0[k] / white.0[k]).0);
+    Lab { l: 116.0 * fy - 16.0, a: 500.0 * (fx - fy), b: 200.0 * (fy - fz) }
+}
+
+/// The coordinates, and their derivatives `[L a b][X Y Z]`.
+pub fn lab_jacobian(xyz: Xyz, white: Xyz) -> (Lab, Matrix3) {
+    let f = [0, 1, 2].map(|k| compress(xyz.0[k] / white.0[k]));
+    let [dx, dy, dz] = [0, 1, 2].map(|k| f[k].1 / white.0[k]);
+    let [fx, fy, fz] = f.map(|(value, _)| value);
+    let lab = Lab { l: 116.0 * fy - 16.0, a: 500.0 * (fx - fy), b: 200.0 * (fy - fz) };
+    let jacobian =
+        [[0.0, 116.0 * dy, 0.0], [500.0 * dx, -500.0 * dy, 0.0], [0.0, 200.0 * dy, -200.0 * dz]];
+    (lab, Matrix3(jacobian))
+}
+
+/// The compressed response to `t`, and its derivative.
+fn compress(t: f64) -> (f64, f64) {
+    if t > LINEAR_BELOW {
+        let root = t.cbrt();
+        (root, root / (3.0 * t))
+    } else {
+        (LINEAR_SLOPE * t + 16.0 / 116.0, LINEAR_SLOPE)
+    }
+}
+
+impl Lab {
+    /// The Euclidean distance ΔE*ab of 1976.
+    pub fn de76(self, other: Self) -> f64 {
+        let [dl, da, db] = [self.l - other.l, self.a - other.a, self.b - other.b];
+        (dl * dl + da * da + db * db).sqrt()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const WHITE: Xyz = Xyz([0.950_43, 1.0, 1.088_80]);
+
+    #[test]
+    fn white_is_100_and_black_is_0() {
+        // Rounding only.
+        assert!(lab_from_xyz(WHITE, WHITE).de76(Lab { l: 100.0, a: 0.0, b: 0.0 }) < 1e-12);
+        assert!(lab_from_xyz(Xyz::default(), WHITE).de76(Lab::default()) < 1e-12);
+    }
+
+    #[test]
+    fn derivatives_match_differences() {
+        let step = 1e-6;
+        for xyz in [[0.3, 0.4, 0.2], [0.002, 0.001, 0.003], [0.5, 0.2, -0.01]] {
+            let (_, jacobian) = lab_jacobian(Xyz(xyz), WHITE);
+            for k in 0..3 {
+                let moved = |by: f64| {
+                    let mut p = xyz;
+                    p[k] += by;
+                    lab_from_xyz(Xyz(p), WHITE)
+                };
+                let (up, down) = (moved(step), moved(-step));
+                let slopes = [up.l - down.l, up.a - down.a, up.b - down.b];
+                for (row, slope) in jacobian.0.iter().zip(slopes) {
+                    let slope = slope / (2.0 * step);
+                    // Truncation of the central difference, relative to the steepest branch.
+                    assert!((row[k] - slope).abs() < 1e-6 * (1.0 + slope.abs()), "{xyz:?}");
+                }
+            }
+        }
+    }
+}

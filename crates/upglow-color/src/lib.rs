@@ -1,0 +1,59 @@
+//! The color half of upglow: from spectra to numbers that a person sees, and back to what is possible.
+//!
+//! Everything that must be agreed before "RGB" means a color is one value, the [`Contract`]: RGB
+//! space, illuminant, observer and chromatic adaptation. A contract on a wavelength [`Grid`] is a
+//! [`Colorimetry`]: white, matrices and integration weights, computed once.
+//!
+//! - spectra: [`Grid`], [`Spectrum`], [`Observer`], [`Illuminant`]
+//! - color: [`Xyz`], [`LinearRgb`], [`Lab`], [`RgbSpace`], [`Adaptation`], [`Metric`]
+//! - limits: [`ColorSolid`], which says whether any material shows a color
+//! - measured tables: [`MeasuredDye`] and the named sets of dyes
+//!
+//! Wavelengths are nm. Tristimulus values are relative: Y = 1 is the perfect diffuser.
+//!
+//! # Examples
+//!
+//! ```
+//! use upglow_color::{ColorSolid, Contract, Grid, LinearRgb};
+//!
+//! let colorimetry = Contract::default().on(Grid::FIT);
+//! let magenta = colorimetry.xyz_from_rgb(LinearRgb([0.9, 0.0, 0.9]));
+//! assert!(!ColorSolid::reflectance(&colorimetry).contains(magenta));
+//! assert!(ColorSolid::fluorescence(&colorimetry).contains(magenta));
+//! ```
+//!
+//! Out of scope: materials (crate `upglow`) and fitting (crate `upglow-fit`).
+
+mod adaptation;
+mod ciede2000;
+mod color_solid;
+mod colorimetry;
+mod contract;
+mod dyes;
+mod grid;
+mod illuminant;
+mod jet;
+mod lab;
+mod matrix;
+mod metric;
+mod observer;
+mod rgb_space;
+mod spectrum;
+mod tables;
+mod values;
+
+pub use adaptation::{Adaptation, UnknownAdaptation};
+pub use ciede2000::{ciede2000, ciede2000_residuals};
+pub use color_solid::{ColorSolid, Nearest};
+pub use colorimetry::Colorimetry;
+pub use contract::Contract;
+pub use dyes::{MeasuredDye, dye_set, dye_set_names, measured_dye, measured_dyes};
+pub use grid::{Grid, GridError};
+pub use illuminant::{Illuminant, IlluminantError};
+pub use lab::{Lab, lab_from_xyz, lab_jacobian};
+pub use matrix::Matrix3;
+pub use metric::{Metric, UnknownMetric};
+pub use observer::Observer;
+pub use rgb_space::{RgbSpace, RgbSpaceError};
+pub use spectrum::{Spectrum, SpectrumCsvError, SpectrumError, read_columns};
+pub use values::{LinearRgb, Xyz};

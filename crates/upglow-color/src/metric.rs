@@ -1,0 +1,140 @@
+//! Color difference metrics. A new one is a variant here: a distance, and residuals with derivatives.
+
+use std::fmt;
+use std::str::FromStr;
+
+use crate::{Colorimetry, Matrix3, Xyz, ciede2000, ciede2000_residuals, lab_jacobian};
+
+/// How far one color is from another.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Metric {
+    /// Euclidean distance in linear RGB of the contract's space, times 100.
+    Rgb,
+    /// Euclidean distance in CIELAB.
+    De76,
+    /// CIEDE2000.
+    #[default]
+    De2000,
+}
+
+/// Brings RGB distances to the scale of ΔE, in which white is 100 from black, so that one set of
+/// solver tolerances serves every metric.
+const RGB_SCALE: f64 = 100.0;
+
+impl Metric {
+    /// Every metric.
+    pub const ALL: [Self; 3] = [Self::Rgb, Self::De76, Self::De2000];
+
+    /// The distance between two colors under `colorimetry`.
+    pub fn distance(self, colorimetry: &Colorimetry, target: Xyz, sample: Xyz) -> f64 {
+        match self {
+            Self::Rgb => norm(self.residuals(colorimetry, target, sample).0),
+            Self::De76 => colorimetry.lab_from_xyz(sample).de76(colorimetry.lab_from_xyz(target)),
+            Self::De2000 => {
+                ciede2000(colorimetry.lab_from_xyz(target), colorimetry.lab_from_xyz(sample))
+            }
+        }
+    }
+
+    /// Three numbers whose squares add up to the square of the distance, and their derivatives by
+    /// the sample, `[residual][X Y Z]`.
+    pub fn residuals(
+        self,
+        colorimetry: &Colorimetry,
+        target: Xyz,
+        sample: Xyz,
+    ) -> ([f64; 3], Matrix3) {
+        match self {
+            Self::Rgb => {
+                let scaled = Matrix3::diagonal([RGB_SCALE; 3]) * colorimetry.rgb_from_xyz_matrix();
+                (scaled * [0, 1, 2].map(|k| sample.0[k] - target.0[k]), scaled)
+            }
+            Self::De76 => {
+                let goal = colorimetry.lab_from_xyz(target);
+                let (lab, by_xyz) = lab_jacobian(sample, colorimetry.white());
+                ([lab.l - goal.l, lab.a - goal.a, lab.b - goal.b], by_xyz)
+            }
+            Self::De2000 => {
+                let goal = colorimetry.lab_from_xyz(target);
+                let (lab, lab_by_xyz) = lab_jacobian(sample, colorimetry.white());
+                let (residuals, by_lab) = ciede2000_residuals(goal, lab);
+                (residuals, by_lab * lab_by_xyz)
+            }
+        }
+    }
+}
+
+fn norm(v: [f64; 3]) -> f64 {
+    v.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+impl fmt::Display for Metric {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Rgb => "rgb",
+            Self::De76 => "de76",
+            Self::De2000 => "de2000",
+        })
+    }
+}
+
+/// A name that is no metric.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("unknown metric {found:?}, expected de2000, de76 or rgb")]
+pub struct UnknownMetric {
+    /// The name given.
+    pub found: String,
+}
+
+impl FromStr for Metric {
+    type Err = UnknownMetric;
+
+    fn from_str(name: &str) -> Result<Self, Self::Err> {
+        Self::ALL
+            .into_iter()
+            .find(|metric| metric.to_string() == name)
+            .ok_or_else(|| UnknownMetric { found: name.into() })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Contract, Grid};
+
+    #[test]
+    fn residuals_have_the_distance_as_their_norm_and_exact_derivatives() {
+        // Central differences with this step: truncation about 1e-6 of the slope.
+        const STEP: f64 = 1e-6;
+        const TOLERANCE: f64 = 1e-5;
+        let colorimetry = Contract::default().on(Grid::FIT);
+        let (target, sample) = (Xyz([0.4, 0.3, 0.2]), [0.35, 0.33, 0.31]);
+        for metric in Metric::ALL {
+            let (residuals, jacobian) = metric.residuals(&colorimetry, target, Xyz(sample));
+            let distance = metric.distance(&colorimetry, target, Xyz(sample));
+            // Rounding only.
+            assert!((norm(residuals) - distance).abs() < 1e-10, "{metric}");
+            for k in 0..3 {
+                let moved = |by: f64| {
+                    let mut p = sample;
+                    p[k] += by;
+                    metric.residuals(&colorimetry, target, Xyz(p)).0
+                };
+                let (up, down) = (moved(STEP), moved(-STEP));
+                for r in 0..3 {
+                    let slope = (up[r] - down[r]) / (2.0 * STEP);
+                    let error = (jacobian.0[r][k] - slope).abs();
+                    assert!(error < TOLERANCE * (1.0 + slope.abs()), "{metric} {r} {k}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn names_round_trip() {
+        for metric in Metric::ALL {
+            assert_eq!(metric.to_string().parse(), Ok(metric));
+        }
+        assert!("de94".parse::<Metric>().is_err());
+    }
+}

@@ -1,0 +1,202 @@
+//! RGB color spaces: primaries and a white. A new space is one line of [`SPACES`].
+
+use crate::{Matrix3, Xyz};
+
+/// The primaries and white of an RGB space, as CIE 1931 chromaticities.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RgbSpace {
+    name: String,
+    primaries: [[f64; 2]; 3],
+    white: [f64; 2],
+}
+
+/// Why an RGB space cannot be had.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RgbSpaceError {
+    /// No built-in space has this name.
+    #[error(
+        "unknown RGB space {found:?}, expected {}, or eight numbers Rx,Ry,Gx,Gy,Bx,By,Wx,Wy",
+        RgbSpace::names().join(", ")
+    )]
+    Unknown {
+        /// The name given.
+        found: String,
+    },
+    /// A chromaticity is not a number, or the white has y of zero or less.
+    #[error("chromaticity ({}, {}), expected finite numbers, and y > 0 for the white", .found[0], .found[1])]
+    Chromaticity {
+        /// The chromaticity given.
+        found: [f64; 2],
+    },
+    /// The primaries lie on a line.
+    #[error("the three primaries lie on one line, expected a triangle")]
+    Degenerate,
+    /// The white is outside the triangle of the primaries.
+    #[error("the white ({}, {}) is outside the triangle of the primaries, expected inside", .white[0], .white[1])]
+    WhiteOutside {
+        /// The white given.
+        white: [f64; 2],
+    },
+}
+
+const D65_WHITE: [f64; 2] = [0.3127, 0.3290];
+/// The white of SMPTE TB-2018-001, near D60.
+const ACES_WHITE: [f64; 2] = [0.32168, 0.33767];
+const D50_WHITE: [f64; 2] = [0.3457, 0.3585];
+const EQUAL_ENERGY_WHITE: [f64; 2] = [1.0 / 3.0, 1.0 / 3.0];
+
+/// Name, primaries of red, green and blue, white.
+type Space = (&'static str, [[f64; 2]; 3], [f64; 2]);
+
+/// Each from its defining standard: SMPTE ST 2065-1 and the Academy's
+/// S-2014-004, ITU-R BT.2020, SMPTE EG 432-1, IEC 61966-2-1, ISO 22028-2, Adobe RGB (1998).
+#[rustfmt::skip]
+const SPACES: [Space; 8] = [
+    ("acescg",      [[0.713, 0.293], [0.165, 0.830], [0.128, 0.044]], ACES_WHITE),
+    ("aces2065-1",  [[0.7347, 0.2653], [0.0, 1.0], [0.0001, -0.0770]], ACES_WHITE),
+    ("rec2020",     [[0.708, 0.292], [0.170, 0.797], [0.131, 0.046]], D65_WHITE),
+    ("p3-d65",      [[0.680, 0.320], [0.265, 0.690], [0.150, 0.060]], D65_WHITE),
+    ("srgb",        [[0.64, 0.33], [0.30, 0.60], [0.15, 0.06]], D65_WHITE),
+    ("prophoto",    [[0.734_699, 0.265_301], [0.159_597, 0.840_403], [0.036_598, 0.000_105]], D50_WHITE),
+    ("adobe-rgb",   [[0.64, 0.33], [0.21, 0.71], [0.15, 0.06]], D65_WHITE),
+    ("xyz",         [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]], EQUAL_ENERGY_WHITE),
+];
+
+impl RgbSpace {
+    /// The names of the built-in spaces.
+    pub fn names() -> [&'static str; SPACES.len()] {
+        SPACES.map(|(name, ..)| name)
+    }
+
+    /// The built-in space of this name; case, `-`, `_`, `.` and blanks do not matter.
+    ///
+    /// # Errors
+    ///
+    /// [`RgbSpaceError::Unknown`] lists the names there are.
+    pub fn named(name: &str) -> Result<Self, RgbSpaceError> {
+        let plain = |s: &str| s.to_ascii_lowercase().replace(['-', '_', '.', ' '], "");
+        SPACES
+            .iter()
+            .find(|(known, ..)| plain(known) == plain(name))
+            .map(|&(name, primaries, white)| Self { name: name.into(), primaries, white })
+            .ok_or_else(|| RgbSpaceError::Unknown { found: name.into() })
+    }
+
+    /// A space of one's own from the chromaticities (x, y) of red, green, blue, and of white.
+    ///
+    /// # Errors
+    ///
+    /// [`RgbSpaceError`] unless the primaries make a triangle around the white.
+    pub fn custom(
+        name: &str,
+        primaries: [[f64; 2]; 3],
+        white: [f64; 2],
+    ) -> Result<Self, RgbSpaceError> {
+        let wrong = |c: &[f64; 2]| !c.iter().all(|v| v.is_finite());
+        if let Some(&found) = primaries.iter().chain([&white]).find(|c| wrong(c)) {
+            return Err(RgbSpaceError::Chromaticity { found });
+        }
+        if white[1] <= 0.0 {
+            return Err(RgbSpaceError::Chromaticity { found: white });
+        }
+        let shares = Self::shares(primaries, white).ok_or(RgbSpaceError::Degenerate)?;
+        if shares.iter().any(|&s| !s.is_finite() || s <= 0.0) {
+            return Err(RgbSpaceError::WhiteOutside { white });
+        }
+        Ok(Self { name: name.into(), primaries, white })
+    }
+
+    /// The name that files state.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Chromaticities (x, y) of red, green and blue.
+    pub fn primaries(&self) -> [[f64; 2]; 3] {
+        self.primaries
+    }
+
+    /// Chromaticity (x, y) of RGB (1, 1, 1).
+    pub fn white(&self) -> [f64; 2] {
+        self.white
+    }
+
+    /// The matrix that takes linear RGB to XYZ, Y = 1 for (1, 1, 1), without adaptation.
+    pub fn xyz_from_rgb(&self) -> Matrix3 {
+        let shares = Self::shares(self.primaries, self.white).expect("checked when it was made");
+        directions(self.primaries) * Matrix3::diagonal(shares)
+    }
+
+    /// How much of each primary makes the white; `None` where the primaries lie on a line.
+    fn shares(primaries: [[f64; 2]; 3], white: [f64; 2]) -> Option<[f64; 3]> {
+        Some(directions(primaries).inverse()? * Xyz::from_chromaticity(white).0)
+    }
+}
+
+impl Default for RgbSpace {
+    /// `ACEScg`.
+    fn default() -> Self {
+        Self::named("acescg").expect("it is in the table")
+    }
+}
+
+/// The tristimulus values x, y, 1 − x − y of each primary, one a column.
+fn directions(primaries: [[f64; 2]; 3]) -> Matrix3 {
+    Matrix3::from_columns(primaries.map(|[x, y]| [x, y, 1.0 - x - y]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Published matrices are printed to about ten digits.
+    const PRINTED_DIGITS: f64 = 1e-9;
+
+    #[test]
+    fn acescg_has_the_published_matrix() {
+        // Academy S-2014-004, TRA1 (AP1 to XYZ).
+        let published = [
+            [0.662_454_181_1, 0.134_004_206_5, 0.156_187_687_0],
+            [0.272_228_716_8, 0.674_081_765_8, 0.053_689_517_4],
+            [-0.005_574_649_5, 0.004_060_733_5, 1.010_339_100_3],
+        ];
+        let computed = RgbSpace::default().xyz_from_rgb().0;
+        for (published, computed) in published.iter().flatten().zip(computed.iter().flatten()) {
+            assert!((published - computed).abs() < PRINTED_DIGITS, "{published} {computed}");
+        }
+    }
+
+    #[test]
+    fn white_is_the_sum_of_the_primaries_in_every_space() {
+        for name in RgbSpace::names() {
+            let space = RgbSpace::named(name).unwrap();
+            let sum = Xyz(space.xyz_from_rgb() * [1.0; 3]).chromaticity().unwrap();
+            for k in 0..2 {
+                // Rounding only.
+                assert!((sum[k] - space.white()[k]).abs() < 1e-12, "{name}");
+            }
+        }
+    }
+
+    #[test]
+    fn spelling_does_not_matter_but_the_space_must_exist() {
+        assert_eq!(RgbSpace::named("ACEScg").unwrap().name(), "acescg");
+        assert_eq!(RgbSpace::named("Rec.2020").unwrap().name(), "rec2020");
+        assert!(
+            RgbSpace::named("rec709").unwrap_err().to_string().starts_with("unknown RGB space")
+        );
+    }
+
+    #[test]
+    fn custom_primaries_must_surround_their_white() {
+        let triangle = [[0.7, 0.3], [0.2, 0.8], [0.1, 0.05]];
+        assert!(RgbSpace::custom("mine", triangle, D65_WHITE).is_ok());
+        let outside = RgbSpace::custom("mine", triangle, [0.7, 0.7]);
+        assert_eq!(outside, Err(RgbSpaceError::WhiteOutside { white: [0.7, 0.7] }));
+        let line = RgbSpace::custom("mine", [[0.1, 0.1], [0.2, 0.2], [0.3, 0.3]], D65_WHITE);
+        assert!(line.is_err());
+        let nan = RgbSpace::custom("mine", [[f64::NAN, 0.3], [0.2, 0.8], [0.1, 0.0]], D65_WHITE);
+        assert!(matches!(nan, Err(RgbSpaceError::Chromaticity { .. })));
+    }
+}
