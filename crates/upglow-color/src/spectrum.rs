@@ -79,6 +79,22 @@ impl Spectrum {
         self.values.iter().sum::<f64>() * f64::from(self.grid.step_nm())
     }
 
+    /// The area under the curve between two wavelengths, in units of the curve times nm.
+    pub fn area(&self, from_nm: f64, to_nm: f64) -> f64 {
+        let (first_nm, step_nm) = (f64::from(self.grid.first_nm()), f64::from(self.grid.step_nm()));
+        let last = (self.values.len() - 1) as f64;
+        let [from, to] = [from_nm, to_nm].map(|nm| ((nm - first_nm) / step_nm).clamp(0.0, last));
+        let mut area = 0.0;
+        let mut low = from;
+        while low < to {
+            let high = (low.floor() + 1.0).min(to);
+            area += (self.at(first_nm + step_nm * low) + self.at(first_nm + step_nm * high)) / 2.0
+                * (high - low);
+            low = high;
+        }
+        area * step_nm
+    }
+
     /// Every sample times `factor`.
     #[must_use]
     pub fn scaled(mut self, factor: f64) -> Self {
@@ -368,6 +384,15 @@ mod tests {
                 assert!((line.at(nm) - nm).abs() < 1e-9, "{nm}");
             }
         }
+    }
+
+    #[test]
+    fn areas_of_neighboring_ranges_add_up() {
+        let line = read(&csv(5, |nm| (nm - 300).to_string())).unwrap();
+        let (left, right) = (line.area(310.2, 450.7), line.area(450.7, 790.0));
+        let whole = (490.0 * 490.0 - 10.2 * 10.2) / 2.0;
+        assert!((left + right - whole).abs() < 1e-9);
+        assert!((line.area(0.0, 1000.0) - 530.0 * 530.0 / 2.0).abs() < 1e-9);
     }
 
     #[test]

@@ -1,1 +1,57 @@
-//! x
+//! The run-time half of upglow: materials for any RGB color, looked up and evaluated.
+//!
+//! A [`Cube`] holds one [`Material`] for each node of a grid over RGB. A look-up mixes the four
+//! materials around a color into a [`Mixture`], without allocation, and a mixture answers what a
+//! renderer asks: [`Mixture::reflectance`], [`Mixture::reradiation_per_nm`], [`Mixture::albedo`].
+//!
+//! - reflectance: [`Sigmoid`], [`Vertex`], [`Features`]
+//! - fluorescence: [`Model`], [`DyeSet`], [`DyeModel`], [`AnalyticModel`]
+//! - color: [`ModelOnGrid`]
+//! - cubes: [`Cube`], [`Interpolation`]; files are described in `docs/cube-format.md`
+//!
+//! # Examples
+//!
+//! ```
+//! use upglow::{Fluorescence, Material, Mixture, Model, Sigmoid};
+//! use upglow::{DyeModel, DyeOptions, DyeSet};
+//!
+//! let dyes = DyeModel::new(DyeSet::named("seed8")?, DyeOptions::default())?;
+//! let model = Model::Dyes(dyes);
+//! let material = Material {
+//!     reflectance: Sigmoid::flat(0.5),
+//!     fluorescence: Fluorescence::Dyes { first: 2, weight: 0.5, concentration: 0.8 },
+//! };
+//! let mixture = Mixture::of(&model, material);
+//! assert!(mixture.reradiation_per_nm(500.0, 540.0) > 0.0);
+//! assert!(mixture.albedo(500.0) <= 1.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Out of scope: finding materials (crate `upglow-fit`), threads, printing.
+
+mod bspline;
+mod cube;
+mod cube_file;
+mod dye;
+mod features;
+mod header;
+mod interpolation;
+mod material;
+mod mixture;
+mod model;
+mod model_on_grid;
+mod sigmoid;
+
+pub use cube::{Cube, CubeError, FitRecord, LookupError, Node};
+pub use cube_file::{ReadCubeError, WriteCubeError, write_whole};
+pub use dye::{DyeSet, DyeSetError};
+pub use features::{FeatureError, Features};
+pub use interpolation::Interpolation;
+pub use material::{Fluorescence, Material};
+pub use mixture::Mixture;
+pub use model::{
+    Accounting, AnalyticModel, DyeCurves, DyeModel, DyeOptions, Mixing, Model, ModelError,
+    QuantumYield, UnknownChoice,
+};
+pub use model_on_grid::{Emitted, ModelOnGrid};
+pub use sigmoid::{Sigmoid, Vertex};

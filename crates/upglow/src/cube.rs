@@ -1,0 +1,270 @@
+//! A cube of materials: one for each node of a grid over RGB.
+
+use upglow_color::{Contract, LinearRgb};
+
+use crate::interpolation::tetrahedron;
+use crate::{Fluorescence, Interpolation, Material, Mixture, Model, Vertex};
+
+/// Materials for every node of a regular grid over linear RGB 0..=1, in single precision.
+///
+/// Nodes are `[blue][green][red]`; node i of an axis of n stands for i / (n − 1).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cube {
+    contract: Contract,
+    model: Model,
+    fit: FitRecord,
+    resolution: usize,
+    nodes: Vec<Node>,
+}
+
+/// How the materials of a cube were found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FitRecord {
+    /// Name of the color difference that was minimized.
+    pub metric: String,
+    /// Greatest |dr/dλ| allowed, 1/nm; `None` for no limit.
+    pub slope_max_per_nm: Option<f64>,
+    /// How often each node looked at its neighbors' materials.
+    pub sweeps: u32,
+}
+
+/// One stored material and how far it is from its color.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Node {
+    /// Curvature (1/nm²), shift (nm) and peak of the reflectance's [`Vertex`].
+    pub reflectance: [f32; 3],
+    /// Number of the first dye in the ring; 0 where no dye is used.
+    pub dye: u8,
+    /// What the model needs besides the dye; the last number used is the concentration:
+    /// weight, concentration for dyes; emission peak (nm), Stokes shift (nm), concentration for
+    /// bells; zeros where nothing fluoresces.
+    pub fluorescence: [f32; 3],
+    /// CIEDE2000 of this material against the node's color under the contract.
+    pub de2000: f32,
+}
+
+/// Why a color has no material in a cube.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum LookupError {
+    /// A component is not a number or outside the cube.
+    #[error("{channel} is {value}, expected 0 to 1, the range of the cube")]
+    Outside {
+        /// red, green or blue.
+        channel: &'static str,
+        /// The value given.
+        value: f64,
+    },
+}
+
+/// Why nodes do not make a cube.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CubeError {
+    /// The resolution is out of range.
+    #[error("resolution {found}, expected {} to {}", Cube::RESOLUTIONS[0], Cube::RESOLUTIONS[1])]
+    Resolution {
+        /// The resolution given.
+        found: usize,
+    },
+    /// There are not resolution³ nodes.
+    #[error("{found} nodes, expected {expected}")]
+    Count {
+        /// Nodes given.
+        found: usize,
+        /// Nodes needed.
+        expected: usize,
+    },
+    /// A node's numbers describe no material of the model.
+    #[error("node [{}][{}][{}] (blue, green, red): {what} is {found}, expected {expected}", .node[0], .node[1], .node[2])]
+    Node {
+        /// Blue, green and red index.
+        node: [usize; 3],
+        /// Which number.
+        what: &'static str,
+        /// The number found.
+        found: f32,
+        /// What it should be.
+        expected: &'static str,
+    },
+}
+
+impl Cube {
+    /// Smallest and greatest number of nodes along an axis.
+    pub const RESOLUTIONS: [usize; 2] = [2, 256];
+
+    /// A cube from its nodes, `[blue][green][red]`.
+    ///
+    /// # Errors
+    ///
+    /// [`CubeError`] if the count is wrong or a node is not a material of the model.
+    pub fn new(
+        contract: Contract,
+        model: Model,
+        fit: FitRecord,
+        resolution: usize,
+        nodes: Vec<Node>,
+    ) -> Result<Self, CubeError> {
+        let [least, most] = Self::RESOLUTIONS;
+        if !(least..=most).contains(&resolution) {
+            return Err(CubeError::Resolution { found: resolution });
+        }
+        let expected = resolution.pow(3);
+        if nodes.len() != expected {
+            return Err(CubeError::Count { found: nodes.len(), expected });
+        }
+        let cube = Self { contract, model, fit, resolution, nodes };
+        for (index, node) in cube.nodes.iter().enumerate() {
+            if let Some((what, found, expected)) = node.fault(&cube.model) {
+                let node = cube.coordinates(index);
+                return Err(CubeError::Node { node, what, found, expected });
+            }
+        }
+        Ok(cube)
+    }
+
+    /// What RGB means here.
+    pub fn contract(&self) -> &Contract {
+        &self.contract
+    }
+
+    /// What the fluorescence is made of.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// How the materials were found.
+    pub fn fit(&self) -> &FitRecord {
+        &self.fit
+    }
+
+    /// Nodes along each axis.
+    pub fn resolution(&self) -> usize {
+        self.resolution
+    }
+
+    /// The nodes, `[blue][green][red]`.
+    pub fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
+    /// Blue, green and red index of node number `index`.
+    pub fn coordinates(&self, index: usize) -> [usize; 3] {
+        let n = self.resolution;
+        [index / (n * n), index / n % n, index % n]
+    }
+
+    /// The color that node number `index` stands for.
+    pub fn node_rgb(&self, index: usize) -> LinearRgb {
+        let [blue, green, red] = self.coordinates(index);
+        let last = (self.resolution - 1) as f64;
+        LinearRgb([red, green, blue].map(|i| i as f64 / last))
+    }
+
+    /// The material of node number `index`.
+    pub fn node_material(&self, index: usize) -> Material {
+        self.nodes[index].material(&self.model)
+    }
+
+    /// Numbers and weights of the four nodes around a color.
+    ///
+    /// # Errors
+    ///
+    /// [`LookupError::Outside`] if a component is not a number in 0..=1.
+    pub fn corners(&self, rgb: LinearRgb) -> Result<[(usize, f64); 4], LookupError> {
+        for (channel, value) in ["red", "green", "blue"].into_iter().zip(rgb.0) {
+            if !(0.0..=1.0).contains(&value) {
+                return Err(LookupError::Outside { channel, value });
+            }
+        }
+        let n = self.resolution;
+        Ok(tetrahedron(n, rgb).map(|([b, g, r], weight)| ((b * n + g) * n + r, weight)))
+    }
+
+    /// The material of a color; nothing is allocated.
+    ///
+    /// # Errors
+    ///
+    /// [`LookupError::Outside`] if a component is not a number in 0..=1.
+    pub fn lookup(
+        &self,
+        rgb: LinearRgb,
+        interpolation: Interpolation,
+    ) -> Result<Mixture<'_>, LookupError> {
+        let corners = self.corners(rgb)?;
+        let materials = corners.map(|(index, weight)| (weight, self.node_material(index)));
+        Ok(Mixture::new(&self.model, interpolation.parts(materials)))
+    }
+}
+
+impl Node {
+    /// Stores a material in single precision; `None` if its parabola is straight and has no vertex.
+    pub fn from_material(material: Material, de2000: f64) -> Option<Self> {
+        let Vertex { curvature_per_nm2, shift_nm, peak } = material.reflectance.to_vertex()?;
+        let (dye, fluorescence) = match material.fluorescence {
+            Fluorescence::None => (0, [0.0; 3]),
+            Fluorescence::Dyes { first, weight, concentration } => {
+                (u8::try_from(first).ok()?, [weight, concentration, 0.0])
+            }
+            Fluorescence::Analytic { emission_peak_nm, stokes_shift_nm, concentration } => {
+                (0, [emission_peak_nm, stokes_shift_nm, concentration])
+            }
+        };
+        Some(Self {
+            reflectance: [curvature_per_nm2, shift_nm, peak].map(to_single),
+            dye,
+            fluorescence: fluorescence.map(to_single),
+            de2000: to_single(de2000),
+        })
+    }
+
+    /// The reflectance's vertex form.
+    pub fn vertex(&self) -> Vertex {
+        let [curvature_per_nm2, shift_nm, peak] = self.reflectance.map(f64::from);
+        Vertex { curvature_per_nm2, shift_nm, peak }
+    }
+
+    /// The material under `model`.
+    pub fn material(&self, model: &Model) -> Material {
+        let [first, second, third] = self.fluorescence.map(f64::from);
+        let fluorescence = match model {
+            Model::Dyes(_) if second > 0.0 => {
+                Fluorescence::Dyes { first: self.dye.into(), weight: first, concentration: second }
+            }
+            Model::Analytic(_) if third > 0.0 => Fluorescence::Analytic {
+                emission_peak_nm: first,
+                stokes_shift_nm: second,
+                concentration: third,
+            },
+            _ => Fluorescence::None,
+        };
+        Material { reflectance: self.vertex().to_sigmoid(), fluorescence }
+    }
+
+    /// The first number that is out of range: its name, itself, and the range.
+    fn fault(&self, model: &Model) -> Option<(&'static str, f32, &'static str)> {
+        let numbers = self.reflectance.iter().chain(&self.fluorescence).chain([&self.de2000]);
+        if let Some(&found) = numbers.into_iter().find(|v| !v.is_finite()) {
+            return Some(("a number", found, "a finite one"));
+        }
+        let fraction =
+            |what, found: f32| (!(0.0..=1.0).contains(&found)).then_some((what, found, "0 to 1"));
+        let [first, second, third] = self.fluorescence;
+        match model {
+            Model::Reflectance => None,
+            Model::Dyes(model) if usize::from(self.dye) >= model.curves().len() => {
+                Some(("the dye", self.dye.into(), "a dye of the ring"))
+            }
+            Model::Dyes(_) => {
+                fraction("the weight", first).or_else(|| fraction("the concentration", second))
+            }
+            Model::Analytic(_) => fraction("the concentration", third),
+        }
+    }
+}
+
+/// The nearest number in single precision.
+#[expect(clippy::cast_possible_truncation, reason = "rounding is what it is for")]
+fn to_single(value: f64) -> f32 {
+    value as f32
+}

@@ -1,0 +1,462 @@
+//! The file that holds a cube: safetensors, one JSON header, a checksum.
+//!
+//! `docs/cube-format.md` describes it for readers in other languages.
+
+use std::borrow::Cow;
+use std::collections::HashMap;
+use std::fmt::Display;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use safetensors::{Dtype, SafeTensors, View};
+use sha2::{Digest, Sha256};
+use upglow_color::Grid;
+
+use crate::header::{Curves, ENTRY, Header};
+use crate::{Cube, CubeError, Model, Node};
+
+/// Why a file is not a cube that this program reads.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReadCubeError {
+    /// The file cannot be read.
+    #[error("{0}")]
+    Io(#[from] std::io::Error),
+    /// The file is not a whole safetensors file.
+    #[error("not a whole safetensors file ({0}), expected a cube made by upglow")]
+    Container(#[from] safetensors::SafeTensorError),
+    /// There is no header entry of ours.
+    #[error("no `upglow` entry in the header, expected a cube made by upglow")]
+    NotACube,
+    /// The file is of another version.
+    #[error("format version {found}, expected {expected}")]
+    Version {
+        /// Version of the file.
+        found: u32,
+        /// Version that this program reads.
+        expected: u32,
+    },
+    /// The header is not what this version writes.
+    #[error("header: {0}")]
+    Header(String),
+    /// A field of the header has a value that this program does not know.
+    #[error("header field {field} is {found:?}, expected {expected}")]
+    Field {
+        /// The field.
+        field: &'static str,
+        /// Its value, or what is wrong with it.
+        found: String,
+        /// What it should be.
+        expected: String,
+    },
+    /// A tensor is absent or has another type or shape.
+    #[error("tensor {name} is {found}, expected {expected}")]
+    Tensor {
+        /// The tensor.
+        name: &'static str,
+        /// Its type and shape, or "absent".
+        found: String,
+        /// What it should be.
+        expected: String,
+    },
+    /// The content is not what was written.
+    #[error("checksum {found}, expected {expected}: the file was altered or damaged")]
+    Checksum {
+        /// SHA-256 of the content, first eight digits.
+        found: String,
+        /// SHA-256 in the file, first eight digits.
+        expected: String,
+    },
+    /// The numbers do not make a cube.
+    #[error(transparent)]
+    Cube(#[from] CubeError),
+}
+
+impl ReadCubeError {
+    pub(crate) fn header(error: serde_json::Error) -> Self {
+        Self::Header(error.to_string())
+    }
+
+    pub(crate) fn field(
+        field: &'static str,
+        found: impl Display,
+        expected: impl std::fmt::Debug,
+    ) -> Self {
+        let expected = format!("{expected:?}").trim_matches('"').to_owned();
+        Self::Field { field, found: found.to_string(), expected }
+    }
+}
+
+/// Why a cube cannot be written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum WriteCubeError {
+    /// The path names something that is not a file.
+    #[error("{} is not a file, expected a path to write a file at", path.display())]
+    NotAFile {
+        /// The path.
+        path: PathBuf,
+    },
+    /// The file cannot be made or filled.
+    #[error("{0}")]
+    Io(#[from] std::io::Error),
+    /// The container cannot be made.
+    #[error("{0}")]
+    Container(#[from] safetensors::SafeTensorError),
+}
+
+const REFLECTANCE: &str = "reflectance";
+const DYE: &str = "dye";
+const FLUORESCENCE: &str = "fluorescence";
+const DE2000: &str = "de2000";
+const ILLUMINANT: &str = "illuminant";
+const DYE_CURVES: &str = "dye_curves";
+const CHECKSUM: &str = "sha256";
+
+/// One array of the file.
+#[derive(Clone, Debug)]
+struct Tensor {
+    name: &'static str,
+    dtype: Dtype,
+    shape: Vec<usize>,
+    bytes: Vec<u8>,
+}
+
+impl View for &Tensor {
+    fn dtype(&self) -> Dtype {
+        self.dtype
+    }
+
+    fn shape(&self) -> &[usize] {
+        &self.shape
+    }
+
+    fn data(&self) -> Cow<'_, [u8]> {
+        Cow::Borrowed(&self.bytes)
+    }
+
+    fn data_len(&self) -> usize {
+        self.bytes.len()
+    }
+}
+
+impl Tensor {
+    fn of_singles(
+        name: &'static str,
+        shape: Vec<usize>,
+        values: impl Iterator<Item = f32>,
+    ) -> Self {
+        Self { name, dtype: Dtype::F32, shape, bytes: values.flat_map(f32::to_le_bytes).collect() }
+    }
+
+    fn of_doubles<'v>(
+        name: &'static str,
+        shape: Vec<usize>,
+        values: impl Iterator<Item = &'v f64>,
+    ) -> Self {
+        let bytes = values.flat_map(|v| v.to_le_bytes()).collect();
+        Self { name, dtype: Dtype::F64, shape, bytes }
+    }
+
+    fn of_bytes(name: &'static str, shape: Vec<usize>, bytes: Vec<u8>) -> Self {
+        Self { name, dtype: Dtype::U8, shape, bytes }
+    }
+}
+
+impl Cube {
+    /// The content of the cube's file.
+    ///
+    /// The same cube gives the same bytes.
+    ///
+    /// # Errors
+    ///
+    /// [`WriteCubeError`] if the container refuses, which it does for no valid cube.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, WriteCubeError> {
+        let mut tensors = self.tensors();
+        let names = tensors.iter().map(|t| t.name.to_owned()).collect();
+        let header = serde_json::to_string(&Header::of(self, names)).expect("plain data");
+        let content = tensors.iter().map(|t| (t.name, t.dtype, &t.shape[..], &t.bytes[..]));
+        let checksum = checksum(&header, content);
+        tensors.push(Tensor::of_bytes(CHECKSUM, vec![checksum.len()], checksum));
+        let metadata = HashMap::from([(ENTRY.to_owned(), header)]);
+        let views = tensors.iter().map(|t| (t.name, t));
+        Ok(safetensors::serialize(views, Some(metadata))?)
+    }
+
+    /// Writes the cube's file. It appears whole or, on any failure, not at all.
+    ///
+    /// # Errors
+    ///
+    /// [`WriteCubeError`] if the path cannot be written.
+    pub fn write(&self, path: &Path) -> Result<(), WriteCubeError> {
+        write_whole(path, &self.to_bytes()?)
+    }
+
+    fn tensors(&self) -> Vec<Tensor> {
+        let n = self.resolution();
+        let nodes = || self.nodes().iter();
+        let fine = Grid::FINE.len();
+        let mut tensors = vec![
+            Tensor::of_singles(
+                REFLECTANCE,
+                vec![n, n, n, 3],
+                nodes().flat_map(|node| node.reflectance),
+            ),
+            Tensor::of_singles(DE2000, vec![n, n, n], nodes().map(|node| node.de2000)),
+            Tensor::of_doubles(
+                ILLUMINANT,
+                vec![fine],
+                self.contract().illuminant.power().values().iter(),
+            ),
+        ];
+        let fluorescence = || nodes().flat_map(|node| node.fluorescence);
+        if !matches!(self.model(), Model::Reflectance) {
+            let shape = vec![n, n, n, 3];
+            tensors.push(Tensor::of_singles(FLUORESCENCE, shape, fluorescence()));
+        }
+        if let Model::Dyes(model) = self.model() {
+            let dyes = nodes().map(|node| node.dye).collect();
+            tensors.push(Tensor::of_bytes(DYE, vec![n, n, n], dyes));
+            let set = model.set().dyes();
+            let curves = set
+                .iter()
+                .flat_map(|dye| dye.absorption.values().iter().chain(dye.emission.values()));
+            tensors.push(Tensor::of_doubles(DYE_CURVES, vec![set.len(), 2, fine], curves));
+        }
+        tensors
+    }
+
+    /// Reads a cube's file.
+    ///
+    /// # Errors
+    ///
+    /// [`ReadCubeError`] if it cannot be read or is not a cube; no content panics.
+    pub fn read(path: &Path) -> Result<Self, ReadCubeError> {
+        Self::from_bytes(&std::fs::read(path)?)
+    }
+
+    /// Reads a cube from the content of its file.
+    ///
+    /// # Errors
+    ///
+    /// [`ReadCubeError`] says what was found and what was expected.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, ReadCubeError> {
+        let (_, metadata) = SafeTensors::read_metadata(bytes)?;
+        let json = metadata.metadata().as_ref().and_then(|entries| entries.get(ENTRY));
+        let json = json.ok_or(ReadCubeError::NotACube)?;
+        let header = Header::parse(json)?;
+        let file = SafeTensors::deserialize(bytes)?;
+        check_sum(json, &file)?;
+        let n = header.resolution;
+        let [least, most] = Self::RESOLUTIONS;
+        if !(least..=most).contains(&n) {
+            return Err(CubeError::Resolution { found: n }.into());
+        }
+        let curves = read_curves(&file, header.model.dye_count())?;
+        let contract = header.contract.to_contract(curves.illuminant)?;
+        let model = header.model.to_model(curves.dyes)?;
+        let nodes = read_nodes(&file, n, &model)?;
+        Ok(Self::new(contract, model, header.fit.to_record(), n, nodes)?)
+    }
+}
+
+/// SHA-256 of the header and of name, type, shape and bytes of each tensor, sorted by name.
+fn checksum<'t>(
+    header: &str,
+    tensors: impl Iterator<Item = (&'t str, Dtype, &'t [usize], &'t [u8])>,
+) -> Vec<u8> {
+    let mut sorted: Vec<_> = tensors.collect();
+    sorted.sort_by_key(|(name, ..)| *name);
+    let mut hash = Sha256::new();
+    hash.update(header);
+    for (name, dtype, shape, bytes) in sorted {
+        let shape: Vec<String> = shape.iter().map(usize::to_string).collect();
+        hash.update(format!("\n{name} {dtype} {}\n", shape.join(",")));
+        hash.update(bytes);
+    }
+    hash.finalize().to_vec()
+}
+
+fn check_sum(header: &str, file: &SafeTensors<'_>) -> Result<(), ReadCubeError> {
+    let stored = tensor(file, CHECKSUM, Dtype::U8, &[32])?;
+    let views = file.iter().filter(|(name, _)| *name != CHECKSUM).collect::<Vec<_>>();
+    let content = views.iter().map(|(name, t)| (*name, t.dtype(), t.shape(), t.data()));
+    let computed = checksum(header, content);
+    if computed == stored {
+        return Ok(());
+    }
+    let digits = |sum: &[u8]| sum[..4].iter().map(|b| format!("{b:02x}")).collect();
+    Err(ReadCubeError::Checksum { found: digits(&computed), expected: digits(stored) })
+}
+
+/// The bytes of one tensor, of the type and shape expected.
+fn tensor<'f>(
+    file: &SafeTensors<'f>,
+    name: &'static str,
+    dtype: Dtype,
+    shape: &[usize],
+) -> Result<&'f [u8], ReadCubeError> {
+    let expected = format!("{dtype} {shape:?}");
+    let Ok(view) = file.tensor(name) else {
+        return Err(ReadCubeError::Tensor { name, found: "absent".into(), expected });
+    };
+    if view.dtype() != dtype || view.shape() != shape {
+        let found = format!("{} {:?}", view.dtype(), view.shape());
+        return Err(ReadCubeError::Tensor { name, found, expected });
+    }
+    Ok(view.data())
+}
+
+fn doubles(bytes: &[u8]) -> Vec<f64> {
+    let (chunks, _) = bytes.as_chunks();
+    chunks.iter().map(|chunk| f64::from_le_bytes(*chunk)).collect()
+}
+
+fn singles(bytes: &[u8]) -> impl Iterator<Item = f32> + '_ {
+    let (chunks, _) = bytes.as_chunks();
+    chunks.iter().map(|chunk| f32::from_le_bytes(*chunk))
+}
+
+fn triples(bytes: &[u8]) -> Vec<[f32; 3]> {
+    singles(bytes).collect::<Vec<_>>().as_chunks().0.to_vec()
+}
+
+fn read_curves(file: &SafeTensors<'_>, dyes: usize) -> Result<Curves, ReadCubeError> {
+    let fine = Grid::FINE.len();
+    let illuminant = doubles(tensor(file, ILLUMINANT, Dtype::F64, &[fine])?);
+    if dyes == 0 {
+        return Ok(Curves { illuminant, dyes: Vec::new() });
+    }
+    let samples = doubles(tensor(file, DYE_CURVES, Dtype::F64, &[dyes, 2, fine])?);
+    let pairs = samples.chunks_exact(2 * fine);
+    let dyes = pairs.map(|pair| [pair[..fine].to_vec(), pair[fine..].to_vec()]).collect();
+    Ok(Curves { illuminant, dyes })
+}
+
+fn read_nodes(file: &SafeTensors<'_>, n: usize, model: &Model) -> Result<Vec<Node>, ReadCubeError> {
+    let count = n.pow(3);
+    let reflectances = triples(tensor(file, REFLECTANCE, Dtype::F32, &[n, n, n, 3])?);
+    let de2000 = singles(tensor(file, DE2000, Dtype::F32, &[n, n, n])?);
+    let fluorescences = match model {
+        Model::Reflectance => vec![[0.0; 3]; count],
+        _ => triples(tensor(file, FLUORESCENCE, Dtype::F32, &[n, n, n, 3])?),
+    };
+    let dyes = match model {
+        Model::Dyes(_) => tensor(file, DYE, Dtype::U8, &[n, n, n])?.to_vec(),
+        _ => vec![0; count],
+    };
+    let numbers = reflectances.into_iter().zip(fluorescences).zip(dyes).zip(de2000);
+    Ok(numbers
+        .map(|(((reflectance, fluorescence), dye), de2000)| Node {
+            reflectance,
+            dye,
+            fluorescence,
+            de2000,
+        })
+        .collect())
+}
+
+/// Writes a file that appears whole or not at all: aside, then renamed.
+///
+/// # Errors
+///
+/// [`WriteCubeError`] if the path is no file's or cannot be written; nothing is left behind.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), WriteCubeError> {
+    if path.file_name().is_none() || path.metadata().is_ok_and(|found| !found.is_file()) {
+        return Err(WriteCubeError::NotAFile { path: path.into() });
+    }
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let mut aside = tempfile::Builder::new().prefix(".upglow-").tempfile_in(folder)?;
+    aside.write_all(bytes)?;
+    aside.as_file().sync_all()?;
+    make_readable(aside.path())?;
+    aside.persist(path).map_err(|e| e.error)?;
+    Ok(())
+}
+
+/// Gives a file the permissions that any new file has; temporary ones are private.
+#[cfg(unix)]
+fn make_readable(path: &Path) -> std::io::Result<()> {
+    use std::os::unix::fs::PermissionsExt;
+    std::fs::set_permissions(path, std::fs::Permissions::from_mode(0o644))
+}
+
+#[cfg(not(unix))]
+fn make_readable(_path: &Path) -> std::io::Result<()> {
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{DyeModel, DyeOptions, DyeSet, FitRecord};
+    use proptest::prelude::*;
+    use upglow_color::Contract;
+
+    fn cube() -> Cube {
+        let set = DyeSet::named("open8").unwrap();
+        let model = Model::Dyes(DyeModel::new(set, DyeOptions::default()).unwrap());
+        let node = |i: u16| Node {
+            reflectance: [1e-4, 500.0 + f32::from(i), -0.5],
+            dye: (i % 8) as u8,
+            fluorescence: [0.25, 0.5, 0.0],
+            de2000: 0.125,
+        };
+        let fit = FitRecord { metric: "de2000".into(), slope_max_per_nm: Some(0.01), sweeps: 2 };
+        Cube::new(Contract::default(), model, fit, 3, (0..27).map(node).collect()).unwrap()
+    }
+
+    #[test]
+    fn a_cube_survives_its_file() {
+        let cube = cube();
+        let bytes = cube.to_bytes().unwrap();
+        assert_eq!(bytes, cube.to_bytes().unwrap());
+        let back = Cube::from_bytes(&bytes).unwrap();
+        assert_eq!(back, cube);
+        assert_eq!(back.to_bytes().unwrap(), bytes);
+    }
+
+    #[test]
+    fn a_file_cut_short_anywhere_is_refused() {
+        let bytes = cube().to_bytes().unwrap();
+        for length in (0..bytes.len()).step_by(997).chain([bytes.len() - 1]) {
+            assert!(Cube::from_bytes(&bytes[..length]).is_err(), "{length}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn an_altered_byte_anywhere_is_refused(place in 0.0..1.0, change in 1_u8..) {
+            let mut bytes = cube().to_bytes().unwrap();
+            let index = (place * bytes.len() as f64) as usize;
+            bytes[index] ^= change;
+            prop_assert!(Cube::from_bytes(&bytes).is_err(), "{index}");
+        }
+
+        #[test]
+        fn noise_is_refused(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
+            prop_assert!(Cube::from_bytes(&bytes).is_err());
+        }
+    }
+
+    #[test]
+    fn the_message_says_what_was_found_and_expected() {
+        let message = |bytes: &[u8]| Cube::from_bytes(bytes).unwrap_err().to_string();
+        let mut bytes = cube().to_bytes().unwrap();
+        let last = bytes.len() - 1;
+        bytes[last] ^= 1;
+        assert!(message(&bytes).starts_with("checksum "));
+        let text = String::from_utf8_lossy(&cube().to_bytes().unwrap()).into_owned();
+        assert!(text.contains("format_version"));
+        assert!(message(b"P6 640 480 255 ...").starts_with("not a whole safetensors file"));
+    }
+
+    #[test]
+    fn a_failed_write_leaves_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let error = write_whole(folder.path(), b"x").unwrap_err().to_string();
+        assert!(error.ends_with("is not a file, expected a path to write a file at"), "{error}");
+        assert!(write_whole(&folder.path().join("no/such/folder/x"), b"x").is_err());
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+}

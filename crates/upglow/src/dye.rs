@@ -1,0 +1,278 @@
+//! Dyes as a material uses them, and rings of dyes.
+
+use std::path::{Path, PathBuf};
+
+use upglow_color::{
+    Grid, MeasuredDye, Observer, Spectrum, SpectrumCsvError, Xyz, dye_set, dye_set_names,
+    read_columns,
+};
+
+/// A ring of measured dyes: neighbors can be mixed, the last is beside the first.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DyeSet {
+    name: String,
+    dyes: Vec<MeasuredDye>,
+}
+
+/// Dyes in a cube are numbered by one byte.
+const MOST_DYES: usize = 255;
+
+/// Why there is no such set of dyes.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum DyeSetError {
+    /// Neither a built-in set nor a folder.
+    #[error(
+        "unknown dye set {found:?}, expected {} or a folder of CSV files",
+        dye_set_names().collect::<Vec<_>>().join(", ")
+    )]
+    Unknown {
+        /// The name given.
+        found: String,
+    },
+    /// The folder or a file in it cannot be read.
+    #[error("{}: {source}", path.display())]
+    Read {
+        /// What was read.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// A file is not a dye.
+    #[error("{}: {source}", path.display())]
+    Csv {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: SpectrumCsvError,
+    },
+    /// A curve of a dye is zero everywhere or above 1.
+    #[error("dye {dye}: the {curve} peaks at {peak}, expected a peak in 0..1, 0 excluded")]
+    Peak {
+        /// The dye.
+        dye: String,
+        /// Which curve.
+        curve: &'static str,
+        /// The greatest sample.
+        peak: f64,
+    },
+    /// A quantum yield in the folder's list is not a fraction.
+    #[error("{}: quantum yield {found:?} of {dye}, expected a number from 0 to 1 or nothing", path.display())]
+    QuantumYield {
+        /// The list.
+        path: PathBuf,
+        /// The dye.
+        dye: String,
+        /// The cell.
+        found: String,
+    },
+    /// No dye, or too many.
+    #[error("{found} dyes, expected 1 to {MOST_DYES}")]
+    Count {
+        /// Dyes found.
+        found: usize,
+    },
+}
+
+impl DyeSet {
+    /// A ring of these dyes, in this order.
+    ///
+    /// # Errors
+    ///
+    /// [`DyeSetError`] if there is no dye or more than 255, or a curve's peak is not in 0..1.
+    pub fn new(name: &str, dyes: Vec<MeasuredDye>) -> Result<Self, DyeSetError> {
+        if dyes.is_empty() || dyes.len() > MOST_DYES {
+            return Err(DyeSetError::Count { found: dyes.len() });
+        }
+        for dye in &dyes {
+            check_peak(dye, "absorption", &dye.absorption, 1.0)?;
+            check_peak(dye, "emission", &dye.emission, f64::INFINITY)?;
+        }
+        Ok(Self { name: name.into(), dyes })
+    }
+
+    /// The built-in set of this name.
+    ///
+    /// # Errors
+    ///
+    /// [`DyeSetError::Unknown`] lists the names there are.
+    pub fn named(name: &str) -> Result<Self, DyeSetError> {
+        let dyes = dye_set(name).ok_or_else(|| DyeSetError::Unknown { found: name.into() })?;
+        Self::new(name, dyes)
+    }
+
+    /// The dyes in a folder of CSV files, `wavelength_nm,absorption,emission` each, as a ring
+    /// sorted by emission hue.
+    ///
+    /// Absorption is a fraction (1 is black at that wavelength); emission is relative. A file
+    /// `PROVENANCE.csv` beside them, with columns `file` and `quantum_yield`, gives the yields.
+    ///
+    /// # Errors
+    ///
+    /// [`DyeSetError`] names the file, the line and what was expected there.
+    pub fn from_folder(folder: &Path) -> Result<Self, DyeSetError> {
+        let mut files = csv_files(folder)?;
+        let list = files.iter().position(|f| f.file_name().is_some_and(|n| n == PROVENANCE));
+        let yields = match list {
+            Some(index) => read_yields(&files.remove(index))?,
+            None => Vec::new(),
+        };
+        let mut dyes =
+            files.iter().map(|file| read_dye(file, &yields)).collect::<Result<Vec<_>, _>>()?;
+        let matching = Observer::cie_1931_2deg().on(Grid::FINE);
+        let hue = |dye: &MeasuredDye| emission_hue(dye, &matching);
+        dyes.sort_by(|a, b| hue(b).total_cmp(&hue(a)));
+        let name = folder.file_name().map_or("dyes".into(), |n| n.to_string_lossy());
+        Self::new(&name, dyes)
+    }
+
+    /// The name that files state.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The dyes in ring order; at least one.
+    pub fn dyes(&self) -> &[MeasuredDye] {
+        &self.dyes
+    }
+}
+
+const PROVENANCE: &str = "PROVENANCE.csv";
+
+fn check_peak(
+    dye: &MeasuredDye,
+    curve: &'static str,
+    samples: &Spectrum,
+    limit: f64,
+) -> Result<(), DyeSetError> {
+    let peak = samples.values().iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    if peak > 0.0 && peak <= limit {
+        return Ok(());
+    }
+    Err(DyeSetError::Peak { dye: dye.name.clone(), curve, peak })
+}
+
+fn csv_files(folder: &Path) -> Result<Vec<PathBuf>, DyeSetError> {
+    let failed = |source| DyeSetError::Read { path: folder.into(), source };
+    let entries: Vec<_> = std::fs::read_dir(folder).and_then(Iterator::collect).map_err(failed)?;
+    let mut files: Vec<PathBuf> = entries.iter().map(std::fs::DirEntry::path).collect();
+    files.retain(|f| f.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv")));
+    files.sort();
+    Ok(files)
+}
+
+fn read_text(path: &Path) -> Result<String, DyeSetError> {
+    std::fs::read_to_string(path).map_err(|source| DyeSetError::Read { path: path.into(), source })
+}
+
+fn read_dye(path: &Path, yields: &[(String, f64)]) -> Result<MeasuredDye, DyeSetError> {
+    let text = read_text(path)?;
+    let [absorption, emission] = read_columns(&text, ["absorption", "emission"], true)
+        .map_err(|source| DyeSetError::Csv { path: path.into(), source })?;
+    let file = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+    let quantum_yield = yields.iter().find(|(listed, _)| *listed == file).map(|(_, q)| *q);
+    let name = path.file_stem().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+    Ok(MeasuredDye { name, absorption, emission, quantum_yield, provenance: file })
+}
+
+/// File and quantum yield of each line of the list that states one.
+fn read_yields(path: &Path) -> Result<Vec<(String, f64)>, DyeSetError> {
+    let text = read_text(path)?;
+    let mut lines = text.lines().map(split_quoted);
+    let header = lines.next().unwrap_or_default();
+    let column = |name: &str| header.iter().position(|cell| cell == name);
+    let (Some(file), Some(quantum_yield)) = (column("file"), column("quantum_yield")) else {
+        return Ok(Vec::new());
+    };
+    let stated = lines.filter_map(|cells| {
+        let cell = cells.get(quantum_yield)?.trim();
+        (!cell.is_empty()).then(|| (cells[file.min(cells.len() - 1)].clone(), cell.to_owned()))
+    });
+    stated
+        .map(|(dye, found)| match found.parse() {
+            Ok(q) if (0.0..=1.0).contains(&q) => Ok((dye, q)),
+            _ => Err(DyeSetError::QuantumYield { path: path.into(), dye, found }),
+        })
+        .collect()
+}
+
+/// The cells of one CSV line, whose commas may stand in double quotes.
+fn split_quoted(line: &str) -> Vec<String> {
+    let mut cells = vec![String::new()];
+    let mut quoted = false;
+    for c in line.chars() {
+        match c {
+            '"' => quoted = !quoted,
+            ',' if !quoted => cells.push(String::new()),
+            _ => cells.last_mut().expect("it starts with one").push(c),
+        }
+    }
+    cells
+}
+
+/// Hue angle of a dye's emission around equal-energy white in CIE 1976 u', v'; radians.
+fn emission_hue(dye: &MeasuredDye, matching: &[[f64; 3]]) -> f64 {
+    let mut sum = [0.0; 3];
+    for (e, m) in dye.emission.values().iter().zip(matching) {
+        (0..3).for_each(|k| sum[k] += e * m[k]);
+    }
+    let uv = |Xyz([x, y, z]): Xyz| {
+        let denominator = x + 15.0 * y + 3.0 * z;
+        [4.0 * x / denominator, 9.0 * y / denominator]
+    };
+    let (color, white) = (uv(Xyz(sum)), uv(Xyz([1.0; 3])));
+    (color[1] - white[1]).atan2(color[0] - white[0])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn built_in_rings_are_in_the_order_of_their_hue() {
+        let matching = Observer::cie_1931_2deg().on(Grid::FINE);
+        for name in dye_set_names() {
+            let set = DyeSet::named(name).unwrap();
+            let hues: Vec<f64> = set.dyes().iter().map(|d| emission_hue(d, &matching)).collect();
+            let next = |i: usize| hues[(i + 1) % hues.len()];
+            let rises = (0..hues.len()).filter(|&i| next(i) > hues[i]).count();
+            assert_eq!(rises, 1, "{name}: {hues:?}");
+        }
+    }
+
+    #[test]
+    fn a_folder_is_a_ring_with_its_listed_yields() {
+        let folder = tempfile::tempdir().unwrap();
+        let write = |name: &str, peak: usize| {
+            let value = |nm: usize| if nm == peak { "1" } else { "0" };
+            let rows: String = (300..=830)
+                .step_by(5)
+                .map(|nm| format!("{nm},{},{}\n", value(nm), value(nm + 10)))
+                .collect();
+            let text = format!("wavelength_nm,absorption,emission\n{rows}");
+            std::fs::write(folder.path().join(name), text).unwrap();
+        };
+        write("red.csv", 640);
+        write("green.csv", 520);
+        write("violet.csv", 420);
+        let list = "file,by,quantum_yield\nred.csv,\"me, myself\",0.5\ngreen.csv,me,\n";
+        std::fs::write(folder.path().join(PROVENANCE), list).unwrap();
+        let set = DyeSet::from_folder(folder.path()).unwrap();
+        let facts: Vec<_> = set.dyes().iter().map(|d| (&d.name[..], d.quantum_yield)).collect();
+        assert_eq!(facts, [("green", None), ("red", Some(0.5)), ("violet", None)]);
+    }
+
+    #[test]
+    fn a_folder_without_dyes_or_with_a_broken_one_is_refused_by_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let empty = DyeSet::from_folder(folder.path()).unwrap_err();
+        assert_eq!(empty.to_string(), "0 dyes, expected 1 to 255");
+        std::fs::write(folder.path().join("x.csv"), "nm,a,e\n").unwrap();
+        let header = DyeSet::from_folder(folder.path()).unwrap_err().to_string();
+        assert!(
+            header.ends_with(
+                "x.csv: header \"nm,a,e\", expected \"wavelength_nm,absorption,emission\""
+            )
+        );
+    }
+}

@@ -1,0 +1,265 @@
+//! What a cube's file says about itself, as JSON.
+
+use serde::{Deserialize, Serialize};
+use upglow_color::{
+    Adaptation, Contract, Grid, Illuminant, MeasuredDye, Observer, RgbSpace, Spectrum,
+};
+
+use crate::{AnalyticModel, Cube, DyeModel, DyeOptions, DyeSet, FitRecord, Model, ReadCubeError};
+
+/// Name of the file's only metadata entry.
+pub(crate) const ENTRY: &str = "upglow";
+
+/// Version of the file format that this program writes and reads.
+const FORMAT_VERSION: u32 = 1;
+
+const NODE_AXES: &str = "[blue][green][red]; node i of n is i / (n - 1), linear";
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Header {
+    pub(crate) format: String,
+    pub(crate) format_version: u32,
+    pub(crate) upglow_version: String,
+    pub(crate) resolution: usize,
+    pub(crate) axes: String,
+    pub(crate) contract: ContractHeader,
+    pub(crate) model: ModelHeader,
+    pub(crate) fit: FitHeader,
+    pub(crate) tensors: Vec<String>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ContractHeader {
+    rgb_space: String,
+    primaries_xy: [[f64; 2]; 3],
+    white_xy: [f64; 2],
+    illuminant: String,
+    observer: String,
+    adaptation: String,
+    fit_grid_nm: [u32; 3],
+    table_grid_nm: [u32; 3],
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields)]
+pub(crate) enum ModelHeader {
+    Reflectance,
+    Dyes {
+        set: String,
+        dyes: Vec<DyeHeader>,
+        mixing: String,
+        accounting: String,
+        quantum_yield: String,
+        optical_density: Option<f64>,
+    },
+    Analytic {
+        absorption_fwhm_nm: f64,
+        emission_fwhm_nm: f64,
+        accounting: String,
+        quantum_yield: f64,
+    },
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct DyeHeader {
+    name: String,
+    measured_quantum_yield: Option<f64>,
+    provenance: String,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct FitHeader {
+    metric: String,
+    slope_max_per_nm: Option<f64>,
+    sweeps: u32,
+}
+
+/// The curves that the header names and the file's tensors hold.
+pub(crate) struct Curves {
+    /// Power of the illuminant on [`Grid::FINE`].
+    pub(crate) illuminant: Vec<f64>,
+    /// Absorption and emission of each dye on [`Grid::FINE`].
+    pub(crate) dyes: Vec<[Vec<f64>; 2]>,
+}
+
+const fn grid_numbers(grid: Grid) -> [u32; 3] {
+    [grid.first_nm(), grid.last_nm(), grid.step_nm()]
+}
+
+impl Header {
+    pub(crate) fn of(cube: &Cube, tensors: Vec<String>) -> Self {
+        Self {
+            format: "upglow cube".into(),
+            format_version: FORMAT_VERSION,
+            upglow_version: env!("CARGO_PKG_VERSION").into(),
+            resolution: cube.resolution(),
+            axes: NODE_AXES.into(),
+            contract: ContractHeader::of(cube.contract()),
+            model: ModelHeader::of(cube.model()),
+            fit: FitHeader::of(cube.fit()),
+            tensors,
+        }
+    }
+
+    /// Reads a header, refusing what this version does not know.
+    pub(crate) fn parse(json: &str) -> Result<Self, ReadCubeError> {
+        #[derive(Deserialize)]
+        struct Version {
+            format_version: u32,
+        }
+        let version: Version = serde_json::from_str(json).map_err(ReadCubeError::header)?;
+        if version.format_version != FORMAT_VERSION {
+            let found = version.format_version;
+            return Err(ReadCubeError::Version { found, expected: FORMAT_VERSION });
+        }
+        serde_json::from_str(json).map_err(ReadCubeError::header)
+    }
+}
+
+impl ContractHeader {
+    fn of(contract: &Contract) -> Self {
+        Self {
+            rgb_space: contract.space.name().into(),
+            primaries_xy: contract.space.primaries(),
+            white_xy: contract.space.white(),
+            illuminant: contract.illuminant.name().into(),
+            observer: contract.observer.name().into(),
+            adaptation: contract.adaptation.to_string(),
+            fit_grid_nm: grid_numbers(Grid::FIT),
+            table_grid_nm: grid_numbers(Grid::FINE),
+        }
+    }
+
+    pub(crate) fn to_contract(&self, illuminant: Vec<f64>) -> Result<Contract, ReadCubeError> {
+        let observer = Observer::cie_1931_2deg();
+        expect_field("observer", &self.observer, observer.name())?;
+        let grids = (grid_numbers(Grid::FIT), grid_numbers(Grid::FINE));
+        if (self.fit_grid_nm, self.table_grid_nm) != grids {
+            return Err(ReadCubeError::field("grids", format!("{:?}", self.fit_grid_nm), grids.0));
+        }
+        let space = RgbSpace::custom(&self.rgb_space, self.primaries_xy, self.white_xy)
+            .map_err(|e| ReadCubeError::field("rgb_space", e, "primaries around a white"))?;
+        let power = Spectrum::new(Grid::FINE, illuminant)
+            .map_err(|e| ReadCubeError::field("illuminant", e, "a spectrum"))?;
+        let illuminant = Illuminant::from_spectrum(&self.illuminant, &power)
+            .map_err(|e| ReadCubeError::field("illuminant", e, "a visible light"))?;
+        let adaptation: Adaptation = parse_field("adaptation", &self.adaptation)?;
+        Ok(Contract { space, illuminant, observer, adaptation })
+    }
+}
+
+impl ModelHeader {
+    fn of(model: &Model) -> Self {
+        match model {
+            Model::Reflectance => Self::Reflectance,
+            Model::Dyes(model) => Self::of_dyes(model),
+            Model::Analytic(model) => Self::Analytic {
+                absorption_fwhm_nm: model.absorption_fwhm_nm(),
+                emission_fwhm_nm: model.emission_fwhm_nm(),
+                accounting: model.accounting().to_string(),
+                quantum_yield: model.quantum_yield(),
+            },
+        }
+    }
+
+    fn of_dyes(model: &DyeModel) -> Self {
+        let DyeOptions { accounting, mixing, quantum_yield, optical_density } = model.options();
+        let dyes = model.set().dyes().iter().map(|dye| DyeHeader {
+            name: dye.name.clone(),
+            measured_quantum_yield: dye.quantum_yield,
+            provenance: dye.provenance.clone(),
+        });
+        Self::Dyes {
+            set: model.set().name().into(),
+            dyes: dyes.collect(),
+            mixing: mixing.to_string(),
+            accounting: accounting.to_string(),
+            quantum_yield: quantum_yield.to_string(),
+            optical_density,
+        }
+    }
+
+    /// How many dyes the model names.
+    pub(crate) fn dye_count(&self) -> usize {
+        match self {
+            Self::Dyes { dyes, .. } => dyes.len(),
+            _ => 0,
+        }
+    }
+
+    pub(crate) fn to_model(&self, curves: Vec<[Vec<f64>; 2]>) -> Result<Model, ReadCubeError> {
+        match self {
+            Self::Reflectance => Ok(Model::Reflectance),
+            Self::Dyes { set, dyes, mixing, accounting, quantum_yield, optical_density } => {
+                let dyes = dyes.iter().zip(curves).map(|(dye, curves)| dye.to_dye(curves));
+                let dyes = dyes.collect::<Result<Vec<_>, _>>()?;
+                let set = DyeSet::new(set, dyes)
+                    .map_err(|e| ReadCubeError::field("dyes", e, "measured curves"))?;
+                let options = DyeOptions {
+                    accounting: parse_field("accounting", accounting)?,
+                    mixing: parse_field("mixing", mixing)?,
+                    quantum_yield: parse_field("quantum_yield", quantum_yield)?,
+                    optical_density: *optical_density,
+                };
+                DyeModel::new(set, options)
+                    .map(Model::Dyes)
+                    .map_err(|e| ReadCubeError::field("model", e, "valid options"))
+            }
+            Self::Analytic { absorption_fwhm_nm, emission_fwhm_nm, accounting, quantum_yield } => {
+                let accounting = parse_field("accounting", accounting)?;
+                AnalyticModel::new(
+                    *absorption_fwhm_nm,
+                    *emission_fwhm_nm,
+                    accounting,
+                    *quantum_yield,
+                )
+                .map(Model::Analytic)
+                .map_err(|e| ReadCubeError::field("model", e, "valid options"))
+            }
+        }
+    }
+}
+
+impl DyeHeader {
+    fn to_dye(&self, curves: [Vec<f64>; 2]) -> Result<MeasuredDye, ReadCubeError> {
+        let [absorption, emission] = curves.map(|values| {
+            Spectrum::new(Grid::FINE, values)
+                .map_err(|e| ReadCubeError::field("dye curves", e, "finite samples"))
+        });
+        Ok(MeasuredDye {
+            name: self.name.clone(),
+            absorption: absorption?,
+            emission: emission?,
+            quantum_yield: self.measured_quantum_yield,
+            provenance: self.provenance.clone(),
+        })
+    }
+}
+
+impl FitHeader {
+    fn of(fit: &FitRecord) -> Self {
+        let FitRecord { metric, slope_max_per_nm, sweeps } = fit.clone();
+        Self { metric, slope_max_per_nm, sweeps }
+    }
+
+    pub(crate) fn to_record(&self) -> FitRecord {
+        let Self { metric, slope_max_per_nm, sweeps } = self.clone();
+        FitRecord { metric, slope_max_per_nm, sweeps }
+    }
+}
+
+fn expect_field(field: &'static str, found: &str, expected: &str) -> Result<(), ReadCubeError> {
+    if found == expected { Ok(()) } else { Err(ReadCubeError::field(field, found, expected)) }
+}
+
+fn parse_field<T>(field: &'static str, text: &str) -> Result<T, ReadCubeError>
+where
+    T: std::str::FromStr,
+    T::Err: std::fmt::Display,
+{
+    text.parse().map_err(|e| ReadCubeError::field(field, e, "a known word"))
+}

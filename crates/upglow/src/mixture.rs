@@ -1,0 +1,204 @@
+//! Weighted mixtures of materials: what a look-up returns, ready to evaluate.
+
+use upglow_color::{Grid, Xyz};
+
+use crate::{Material, Model, ModelOnGrid};
+
+/// A convex mixture of up to four materials of one model.
+///
+/// The light that a mixture gives back is the weighted mean of what its materials give back, so a
+/// mixture of valid materials is valid: it conserves energy, its reflectance is a fraction and no
+/// steeper than theirs, and its color is the weighted mean of theirs.
+#[derive(Clone, Copy, Debug)]
+pub struct Mixture<'m> {
+    model: &'m Model,
+    parts: [(f64, Material); 4],
+}
+
+impl<'m> Mixture<'m> {
+    /// Four materials and their weights, which are 0 or more and add up to 1.
+    pub(crate) fn new(model: &'m Model, parts: [(f64, Material); 4]) -> Self {
+        debug_assert!((parts.iter().map(|(w, _)| w).sum::<f64>() - 1.0).abs() < 1e-12);
+        Self { model, parts }
+    }
+
+    /// One material alone.
+    pub fn of(model: &'m Model, material: Material) -> Self {
+        let nothing = (0.0, Material::default());
+        Self { model, parts: [(1.0, material), nothing, nothing, nothing] }
+    }
+
+    /// The model of its materials.
+    pub fn model(&self) -> &'m Model {
+        self.model
+    }
+
+    /// The materials that take part, with their weights.
+    pub fn parts(&self) -> impl Iterator<Item = (f64, Material)> + '_ {
+        self.parts.iter().copied().filter(|(weight, _)| *weight > 0.0)
+    }
+
+    /// Share of incident light at `lambda_nm` that is reflected at the same wavelength, 0..=1:
+    /// (1 − c·a(λ))·r(λ).
+    pub fn reflectance(&self, lambda_nm: f64) -> f64 {
+        self.parts()
+            .map(|(weight, material)| {
+                let absorbed: f64 =
+                    material.fluorescence.lobes(self.model).map(|l| l.absorbed(lambda_nm)).sum();
+                weight * (1.0 - absorbed) * material.reflectance.at(lambda_nm)
+            })
+            .sum()
+    }
+
+    /// Energy that comes out per nm at `out_nm` by fluorescence, per unit that came in at `in_nm`;
+    /// 1/nm. Reflection at the same wavelength is [`Mixture::reflectance`].
+    pub fn reradiation_per_nm(&self, in_nm: f64, out_nm: f64) -> f64 {
+        self.lobes().map(|(w, lobe)| w * lobe.returned(in_nm) * lobe.emission(out_nm)).sum()
+    }
+
+    /// Share of incident light at `in_nm` that comes out at any wavelength, 0..=1.
+    pub fn albedo(&self, in_nm: f64) -> f64 {
+        let fluorescent: f64 = self.lobes().map(|(w, lobe)| w * lobe.returned(in_nm)).sum();
+        self.reflectance(in_nm) + fluorescent
+    }
+
+    /// The re-radiation (Donaldson) matrix over the bands around `grid`'s wavelengths.
+    ///
+    /// `[outgoing][incident]`: the share of the energy that comes in at the incident wavelength
+    /// and leaves within half a step of the outgoing one. Each column adds up to at most 1, and to
+    /// [`Mixture::albedo`] where the grid holds the whole emission.
+    pub fn reradiation_matrix(&self, grid: Grid) -> Vec<Vec<f64>> {
+        let half = f64::from(grid.step_nm()) / 2.0;
+        grid.wavelengths_nm()
+            .map(|out_nm| {
+                let row = grid.wavelengths_nm().map(|in_nm| {
+                    let moved: f64 = self
+                        .lobes()
+                        .map(|(w, lobe)| {
+                            w * lobe.returned(in_nm)
+                                * lobe.emission_between(out_nm - half, out_nm + half)
+                        })
+                        .sum();
+                    if in_nm == out_nm { moved + self.reflectance(in_nm) } else { moved }
+                });
+                row.collect()
+            })
+            .collect()
+    }
+
+    /// The color of the mixture under the light of `sums`, which must be of the same model.
+    pub fn color(&self, sums: &ModelOnGrid<'_>) -> Xyz {
+        let mut sum = [0.0; 3];
+        for (weight, material) in self.parts() {
+            let color = sums.color(material).0;
+            (0..3).for_each(|k| sum[k] += weight * color[k]);
+        }
+        Xyz(sum)
+    }
+
+    /// Whether any light comes back at another wavelength.
+    pub fn is_fluorescent(&self) -> bool {
+        self.parts().any(|(_, material)| material.fluorescence.concentration() > 0.0)
+    }
+
+    fn lobes(&self) -> impl Iterator<Item = (f64, crate::material::Lobe<'m>)> + '_ {
+        self.parts().flat_map(|(weight, material)| {
+            material.fluorescence.lobes(self.model).map(move |lobe| (weight, lobe))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::*;
+    use proptest::prelude::*;
+    use upglow_color::Contract;
+
+    fn models() -> Vec<Model> {
+        let mut models = vec![
+            Model::Reflectance,
+            Model::Analytic(AnalyticModel::default()),
+            Model::Analytic(AnalyticModel::new(30.0, 60.0, Accounting::Photon, 0.7).unwrap()),
+        ];
+        for accounting in [Accounting::Energy, Accounting::Photon] {
+            for mixing in [Mixing::Pooled, Mixing::Separate] {
+                for optical_density in [None, Some(4.0)] {
+                    let quantum_yield = QuantumYield::Measured;
+                    let options = DyeOptions { accounting, mixing, quantum_yield, optical_density };
+                    let set = DyeSet::named("seed8").unwrap();
+                    models.push(Model::Dyes(DyeModel::new(set, options).unwrap()));
+                }
+            }
+        }
+        models
+    }
+
+    fn material(model: &Model, u: [f64; 6]) -> Material {
+        let features = Features {
+            shift_nm: 350.0 + 400.0 * u[0],
+            width_nm: 5.0 + 200.0 * u[1],
+            slope_per_nm: 0.02 * (u[2] - 0.5) + 1e-6,
+        };
+        let fluorescence = match model {
+            Model::Reflectance => Fluorescence::None,
+            Model::Dyes(_) => Fluorescence::Dyes {
+                first: (7.999 * u[3]) as usize,
+                weight: u[4],
+                concentration: u[5],
+            },
+            Model::Analytic(_) => Fluorescence::Analytic {
+                emission_peak_nm: 400.0 + 310.0 * u[3],
+                stokes_shift_nm: 10.0 + 110.0 * u[4],
+                concentration: u[5],
+            },
+        };
+        Material { reflectance: features.to_sigmoid().unwrap(), fluorescence }
+    }
+
+    fn unit6() -> impl Strategy<Value = [f64; 6]> {
+        prop::array::uniform6(0.0..1.0)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(16))]
+
+        #[test]
+        fn no_wavelength_gives_back_more_than_it_brought(u in unit6(), v in unit6(), t in 0.0..1.0) {
+            for model in models() {
+                let nothing = (0.0, Material::default());
+                let parts = [(t, material(&model, u)), (1.0 - t, material(&model, v)), nothing, nothing];
+                let mixture = Mixture::new(&model, parts);
+                for nm in Grid::FIT.wavelengths_nm() {
+                    let albedo = mixture.albedo(nm);
+                    // Rounding only.
+                    prop_assert!((0.0..=1.0 + 1e-12).contains(&albedo), "{nm} nm: {albedo}");
+                }
+                let matrix = mixture.reradiation_matrix(Grid::FIT);
+                for (i, nm) in Grid::FIT.wavelengths_nm().enumerate() {
+                    let column: f64 = matrix.iter().map(|row| row[i]).sum();
+                    prop_assert!(column <= mixture.albedo(nm) + 1e-12, "{nm} nm: {column}");
+                }
+            }
+        }
+
+        #[test]
+        fn the_matrix_times_the_light_is_the_color(u in unit6()) {
+            // The matrix integrates the emission over each band, the sums take it at the center.
+            const QUADRATURE: f64 = 2e-3;
+            let colorimetry = Contract::default().on(Grid::FIT);
+            for model in models() {
+                let mixture = Mixture::of(&model, material(&model, u));
+                let color = mixture.color(&ModelOnGrid::new(&model, &colorimetry));
+                let mut sum = [0.0; 3];
+                for (row, m) in mixture.reradiation_matrix(Grid::FIT).iter().zip(colorimetry.matching()) {
+                    let out: f64 = row.iter().zip(colorimetry.irradiance()).map(|(f, e)| f * e).sum();
+                    (0..3).for_each(|k| sum[k] += out * m[k]);
+                }
+                for k in 0..3 {
+                    prop_assert!((sum[k] - color.0[k]).abs() < QUADRATURE, "{sum:?} {color:?}");
+                }
+            }
+        }
+    }
+}

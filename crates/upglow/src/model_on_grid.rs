@@ -1,0 +1,297 @@
+//! The sums behind a material's color, with everything that does not depend on the material done.
+
+use upglow_color::{Colorimetry, Xyz};
+
+use crate::{Accounting, AnalyticModel, DyeModel, Fluorescence, Material, Mixing, Model};
+
+/// A model under one light and observer.
+///
+/// The color of a material is
+/// `k ∫ x̄ȳz̄ ((1 − c·a)·r·L + c·Q·A·ê) dλ`, with `A = ∫ a·L dλ`; here `k` is inside the weights.
+#[derive(Clone, Debug)]
+pub struct ModelOnGrid<'a> {
+    model: &'a Model,
+    colorimetry: &'a Colorimetry,
+    wavelengths_nm: Vec<f64>,
+    dyes: Vec<SampledDye>,
+}
+
+/// One dye on the grid.
+#[derive(Clone, Debug)]
+struct SampledDye {
+    /// Absorptance at concentration 1, `[wavelength]`.
+    absorption: Vec<f64>,
+    /// Color of one unit of emitted energy.
+    stimulus: [f64; 3],
+    quantum_yield: f64,
+    mean_emission_nm: f64,
+}
+
+/// A color and its derivatives by `N` parameters, `[parameter][X Y Z]`.
+#[derive(Clone, Copy, Debug)]
+pub struct Emitted<const N: usize> {
+    /// Color that a fluorescence of concentration 1 emits.
+    pub color: [f64; 3],
+    /// Its derivatives by the model's parameters.
+    pub derivatives: [[f64; 3]; N],
+}
+
+impl<'a> ModelOnGrid<'a> {
+    /// Samples the model's curves on the grid of `colorimetry`.
+    pub fn new(model: &'a Model, colorimetry: &'a Colorimetry) -> Self {
+        let grid = colorimetry.grid();
+        let dyes = match model {
+            Model::Dyes(model) => {
+                model.curves().iter().map(|c| SampledDye::new(c, colorimetry)).collect()
+            }
+            _ => Vec::new(),
+        };
+        Self { model, colorimetry, wavelengths_nm: grid.wavelengths_nm().collect(), dyes }
+    }
+
+    /// The model.
+    pub fn model(&self) -> &'a Model {
+        self.model
+    }
+
+    /// The light and observer.
+    pub fn colorimetry(&self) -> &'a Colorimetry {
+        self.colorimetry
+    }
+
+    /// Wavelengths of every sum, nm.
+    pub fn wavelengths_nm(&self) -> &[f64] {
+        &self.wavelengths_nm
+    }
+
+    /// Absorptance of one dye at concentration 1, `[wavelength]`, 0..=1.
+    pub fn dye_absorption(&self, dye: usize) -> &[f64] {
+        &self.dyes[dye].absorption
+    }
+
+    /// What dye `first`, mixed with its neighbor by `weight`, emits at concentration 1; the
+    /// parameter is the weight.
+    pub fn emitted_by_dyes(&self, model: &DyeModel, first: usize, weight: f64) -> Emitted<1> {
+        let (a, b) = (&self.dyes[first], &self.dyes[model.partner(first)]);
+        let options = model.options();
+        match options.mixing {
+            Mixing::Pooled => self.pooled(a, b, weight, options.accounting),
+            Mixing::Separate => self.separate(a, b, weight, options.accounting),
+        }
+    }
+
+    fn pooled(
+        &self,
+        a: &SampledDye,
+        b: &SampledDye,
+        weight: f64,
+        accounting: Accounting,
+    ) -> Emitted<1> {
+        let mix = |x: f64, y: f64| (1.0 - weight) * x + weight * y;
+        let mean_nm = mix(a.mean_emission_nm, b.mean_emission_nm);
+        let (of_a, of_b) =
+            (self.absorbed(a, accounting, mean_nm), self.absorbed(b, accounting, mean_nm));
+        let absorbed = mix(of_a.0, of_b.0);
+        let by_mean_nm = mix(of_a.1, of_b.1);
+        let absorbed_by_weight =
+            of_b.0 - of_a.0 + by_mean_nm * (b.mean_emission_nm - a.mean_emission_nm);
+        let quantum_yield = mix(a.quantum_yield, b.quantum_yield);
+        let energy = quantum_yield * absorbed;
+        let energy_by_weight =
+            (b.quantum_yield - a.quantum_yield) * absorbed + quantum_yield * absorbed_by_weight;
+        let stimulus = [0, 1, 2].map(|k| mix(a.stimulus[k], b.stimulus[k]));
+        Emitted {
+            color: stimulus.map(|s| energy * s),
+            derivatives: [[0, 1, 2].map(|k| {
+                energy_by_weight * stimulus[k] + energy * (b.stimulus[k] - a.stimulus[k])
+            })],
+        }
+    }
+
+    fn separate(
+        &self,
+        a: &SampledDye,
+        b: &SampledDye,
+        weight: f64,
+        accounting: Accounting,
+    ) -> Emitted<1> {
+        let [of_a, of_b] = [a, b].map(|dye| {
+            let energy = dye.quantum_yield * self.absorbed(dye, accounting, dye.mean_emission_nm).0;
+            dye.stimulus.map(|s| energy * s)
+        });
+        Emitted {
+            color: [0, 1, 2].map(|k| (1.0 - weight) * of_a[k] + weight * of_b[k]),
+            derivatives: [[0, 1, 2].map(|k| of_b[k] - of_a[k])],
+        }
+    }
+
+    /// Energy that one dye absorbs and may give back around `mean_nm`, and its derivative by
+    /// `mean_nm`, 1/nm.
+    fn absorbed(&self, dye: &SampledDye, accounting: Accounting, mean_nm: f64) -> (f64, f64) {
+        let samples = dye.absorption.iter().zip(self.colorimetry.irradiance());
+        let mut energy = 0.0;
+        let mut below_mean = 0.0;
+        for ((a, e), &nm) in samples.zip(&self.wavelengths_nm) {
+            let taken = a * e;
+            energy += taken * accounting.share(nm, mean_nm);
+            below_mean += if nm < mean_nm { taken * nm } else { 0.0 };
+        }
+        match accounting {
+            Accounting::Energy => (energy, 0.0),
+            Accounting::Photon => (energy, -below_mean / (mean_nm * mean_nm)),
+        }
+    }
+
+    /// What bells emit at concentration 1; the parameters are the emission's peak and the Stokes
+    /// shift, nm.
+    pub fn emitted_by_bells(
+        &self,
+        model: &AnalyticModel,
+        emission_peak_nm: f64,
+        stokes_shift_nm: f64,
+    ) -> Emitted<2> {
+        let absorption_nm = emission_peak_nm - stokes_shift_nm;
+        let step_nm = f64::from(self.colorimetry.grid().step_nm());
+        let samples = self.colorimetry.irradiance().iter().zip(self.colorimetry.matching());
+        let (mut energy, mut by_absorption, mut by_mean) = (0.0, 0.0, 0.0);
+        let (mut stimulus, mut stimulus_by_peak) = ([0.0; 3], [0.0; 3]);
+        for ((e, m), &nm) in samples.zip(&self.wavelengths_nm) {
+            let (a, a_slope) = model.absorption(absorption_nm, nm);
+            let share = model.accounting().share(nm, emission_peak_nm);
+            energy += a * e * share;
+            by_absorption += a_slope * e * share;
+            if model.accounting() == Accounting::Photon && nm < emission_peak_nm {
+                by_mean -= a * e * nm / (emission_peak_nm * emission_peak_nm);
+            }
+            let (g, g_slope) = model.emission(emission_peak_nm, nm);
+            for k in 0..3 {
+                stimulus[k] += g * m[k] * step_nm;
+                stimulus_by_peak[k] += g_slope * m[k] * step_nm;
+            }
+        }
+        let q = model.quantum_yield();
+        let by_peak = [0, 1, 2]
+            .map(|k| q * ((by_absorption + by_mean) * stimulus[k] + energy * stimulus_by_peak[k]));
+        let by_shift = stimulus.map(|s| -q * by_absorption * s);
+        Emitted { color: stimulus.map(|s| q * energy * s), derivatives: [by_peak, by_shift] }
+    }
+
+    /// The color of one material.
+    pub fn color(&self, material: Material) -> Xyz {
+        let absorbed = self.absorbed_share(material.fluorescence);
+        let reflected = self
+            .wavelengths_nm
+            .iter()
+            .enumerate()
+            .map(|(i, &nm)| (1.0 - absorbed(i)) * material.reflectance.at(nm));
+        let mut color = self.colorimetry.xyz_from_reflectance(reflected).0;
+        let emitted = match (material.fluorescence, self.model) {
+            (Fluorescence::Dyes { first, weight, .. }, Model::Dyes(model)) => {
+                self.emitted_by_dyes(model, first, weight).color
+            }
+            (
+                Fluorescence::Analytic { emission_peak_nm, stokes_shift_nm, .. },
+                Model::Analytic(model),
+            ) => self.emitted_by_bells(model, emission_peak_nm, stokes_shift_nm).color,
+            _ => [0.0; 3],
+        };
+        let concentration = material.fluorescence.concentration();
+        (0..3).for_each(|k| color[k] += concentration * emitted[k]);
+        Xyz(color)
+    }
+
+    /// Share of light that the fluorescence absorbs at each wavelength of the grid.
+    fn absorbed_share(&self, fluorescence: Fluorescence) -> impl Fn(usize) -> f64 + '_ {
+        move |i| match (fluorescence, self.model) {
+            (Fluorescence::Dyes { first, weight, concentration }, Model::Dyes(model)) => {
+                let at = |dye: usize| self.dyes[dye].absorption[i];
+                concentration * ((1.0 - weight) * at(first) + weight * at(model.partner(first)))
+            }
+            (
+                Fluorescence::Analytic { emission_peak_nm, stokes_shift_nm, concentration },
+                Model::Analytic(model),
+            ) => {
+                let center = emission_peak_nm - stokes_shift_nm;
+                concentration * model.absorption(center, self.wavelengths_nm[i]).0
+            }
+            _ => 0.0,
+        }
+    }
+}
+
+impl SampledDye {
+    fn new(curves: &crate::DyeCurves, colorimetry: &Colorimetry) -> Self {
+        let grid = colorimetry.grid();
+        let emission = curves.emission.resampled(grid);
+        // The sum over a coarse grid is not quite the area: without this energy would be made.
+        let area: f64 = emission.values().iter().sum();
+        let mut stimulus = [0.0; 3];
+        for (e, m) in emission.values().iter().zip(colorimetry.matching()) {
+            (0..3).for_each(|k| stimulus[k] += e / area * m[k]);
+        }
+        Self {
+            absorption: curves.absorption.resampled(grid).values().to_vec(),
+            stimulus,
+            quantum_yield: curves.quantum_yield,
+            mean_emission_nm: curves.mean_emission_nm,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{DyeOptions, DyeSet, QuantumYield};
+    use upglow_color::{Contract, Grid};
+
+    /// A central difference of this step errs by its square and by rounding over it.
+    const STEP: f64 = 1e-5;
+    const TOLERANCE: f64 = 1e-7;
+
+    #[test]
+    fn derivatives_by_the_weight_match_differences() {
+        let colorimetry = Contract::default().on(Grid::FIT);
+        for accounting in [Accounting::Energy, Accounting::Photon] {
+            for mixing in [Mixing::Pooled, Mixing::Separate] {
+                let quantum_yield = QuantumYield::Measured;
+                let options =
+                    DyeOptions { accounting, mixing, quantum_yield, optical_density: None };
+                let set = DyeSet::named("wide14").unwrap();
+                let dyes = DyeModel::new(set, options).unwrap();
+                let model = Model::Dyes(dyes.clone());
+                let sums = ModelOnGrid::new(&model, &colorimetry);
+                for first in 0..dyes.pairs() {
+                    let at = |w: f64| sums.emitted_by_dyes(&dyes, first, w);
+                    let (low, high) = (at(0.3 - STEP).color, at(0.3 + STEP).color);
+                    for k in 0..3 {
+                        let quotient = (high[k] - low[k]) / (2.0 * STEP);
+                        let exact = at(0.3).derivatives[0][k];
+                        assert!((exact - quotient).abs() < TOLERANCE, "{accounting} {mixing}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn derivatives_by_peak_and_shift_match_differences() {
+        let colorimetry = Contract::default().on(Grid::FIT);
+        for accounting in [Accounting::Energy, Accounting::Photon] {
+            let bells = AnalyticModel::new(50.0, 45.0, accounting, 0.9).unwrap();
+            let model = Model::Analytic(bells);
+            let sums = ModelOnGrid::new(&model, &colorimetry);
+            let at = |peak: f64, shift: f64| sums.emitted_by_bells(&bells, peak, shift);
+            for (peak, shift) in [(431.3, 40.2), (552.7, 97.1), (677.2, 13.9)] {
+                let exact = at(peak, shift).derivatives;
+                let by_peak = [at(peak - STEP, shift).color, at(peak + STEP, shift).color];
+                let by_shift = [at(peak, shift - STEP).color, at(peak, shift + STEP).color];
+                for (exact, [low, high]) in exact.iter().zip([by_peak, by_shift]) {
+                    for k in 0..3 {
+                        let quotient = (high[k] - low[k]) / (2.0 * STEP);
+                        assert!((exact[k] - quotient).abs() < TOLERANCE, "{peak} {shift}");
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,52 @@
+//! The project's own commands: `cargo xtask tables` and `cargo xtask check`.
+//!
+//! `tables` turns `tables/*.csv` into committed Rust; `check` is the gate, the same on every
+//! machine and in `.ci/run`.
+
+use std::path::Path;
+use std::process::ExitCode;
+
+mod check;
+mod layers;
+mod readme;
+mod tables;
+
+const USAGE: &str = "\
+usage: cargo xtask tables          write crates/upglow-color/src/tables from tables/*.csv
+       cargo xtask check [--slow]  run every check; --slow adds the tests named slow_*";
+
+/// Exit status on bad usage; 1 is a check that failed.
+const BAD_USAGE: u8 = 2;
+
+fn main() -> ExitCode {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("xtask lies in the workspace");
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    match args.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        ["tables"] => tables(root),
+        ["check"] => check::run(root, check::Tests::Quick),
+        ["check", "--slow"] => check::run(root, check::Tests::QuickAndSlow),
+        _ => {
+            eprintln!("{USAGE}");
+            ExitCode::from(BAD_USAGE)
+        }
+    }
+}
+
+fn tables(root: &Path) -> ExitCode {
+    let files = match tables::generate(root) {
+        Ok(files) => files,
+        Err(error) => return fail(&error),
+    };
+    match tables::write(root, &files) {
+        Ok(changed) => {
+            println!("tables: {} files, {changed} changed", files.len());
+            ExitCode::SUCCESS
+        }
+        Err(error) => fail(&error),
+    }
+}
+
+fn fail(error: &dyn std::error::Error) -> ExitCode {
+    eprintln!("error: {error}");
+    ExitCode::FAILURE
+}
