@@ -1,1 +1,10 @@
-//! x
+//! From colors to materials: fits one color, builds whole cubes, verifies what was built.
+mod build;
+mod fitter;
+mod options;
+mod progress;
+
+pub use build::{BuildError, build_cube};
+pub use fitter::{ColorError, Fit, Fitter};
+pub use options::{FitOptions, FitOptionsError};
+pub use progress::{Progress, Unwatched, Watch};

@@ -1,0 +1,49 @@
+//! What a fit is asked for.
+
+use upglow_color::Metric;
+
+/// The choices in a fit, apart from contract and model.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FitOptions {
+    /// The color difference that is minimized. Default: CIEDE2000.
+    pub metric: Metric,
+    /// Greatest |dr/dλ| of any reflectance, 1/nm; default 0.01. `None`: as steep as sums over 5 nm
+    /// can tell from a step, 0.2/nm.
+    pub slope_max_per_nm: Option<f64>,
+    /// How often each node that missed its color tries its neighbors' materials. Default: 2.
+    pub sweeps: u32,
+}
+
+impl Default for FitOptions {
+    fn default() -> Self {
+        Self { metric: Metric::De2000, slope_max_per_nm: Some(0.01), sweeps: 2 }
+    }
+}
+
+/// Why a fit cannot start.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FitOptionsError {
+    /// The slope limit is out of range.
+    #[error("slope limit {found}/nm, expected {} to {}/nm", SLOPE_RANGE_PER_NM[0], SLOPE_RANGE_PER_NM[1])]
+    Slope {
+        /// The limit given, 1/nm.
+        found: f64,
+    },
+}
+
+/// Below the first every color is nearly gray; beyond the second, sums over 5 nm see only a step.
+pub(crate) const SLOPE_RANGE_PER_NM: [f64; 2] = [1e-4, 0.2];
+
+impl FitOptions {
+    /// The greatest slope that the fit allows itself, 1/nm.
+    ///
+    /// # Errors
+    ///
+    /// [`FitOptionsError`] if the limit is not in 0.0001 to 0.2.
+    pub(crate) fn slope_limit_per_nm(&self) -> Result<f64, FitOptionsError> {
+        let [least, most] = SLOPE_RANGE_PER_NM;
+        let found = self.slope_max_per_nm.unwrap_or(most);
+        if (least..=most).contains(&found) { Ok(found) } else { Err(FitOptionsError::Slope { found }) }
+    }
+}
