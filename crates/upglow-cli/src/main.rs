@@ -1,2 +1,28 @@
-//! x
-fn main() {}
+//! The program `upglow`: RGB colors to physically valid spectral materials with fluorescence.
+//!
+//! What was typed (`args`) becomes what is to be done (`plan`), and a command does it. Data goes to
+//! standard output, progress, warnings and errors to standard error.
+
+mod args;
+mod commands;
+mod failure;
+mod files;
+mod output;
+mod plan;
+mod plot;
+mod progress;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+fn main() -> ExitCode {
+    let args = match args::Args::try_parse() {
+        Ok(args) => args,
+        Err(error) => return failure::report_usage(&error),
+    };
+    match commands::run(args) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.report(),
+    }
+}

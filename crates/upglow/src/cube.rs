@@ -3,7 +3,7 @@
 use upglow_color::{Contract, LinearRgb};
 
 use crate::interpolation::tetrahedron;
-use crate::{Fluorescence, Interpolation, Material, Mixture, Model, Vertex};
+use crate::{Edge, Fluorescence, Interpolation, Material, Mixture, Model};
 
 /// Materials for every node of a regular grid over linear RGB 0..=1, in single precision.
 ///
@@ -31,7 +31,7 @@ pub struct FitRecord {
 /// One stored material and how far it is from its color.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Node {
-    /// Curvature (1/nm²), shift (nm) and peak of the reflectance's [`Vertex`].
+    /// Wavelength (nm), level and slope (1/nm) of the reflectance's [`Edge`].
     pub reflectance: [f32; 3],
     /// Number of the first dye in the ring; 0 where no dye is used.
     pub dye: u8,
@@ -198,30 +198,35 @@ impl Cube {
 }
 
 impl Node {
-    /// Stores a material in single precision; `None` if its parabola is straight and has no vertex.
-    pub fn from_material(material: Material, de2000: f64) -> Option<Self> {
-        let Vertex { curvature_per_nm2, shift_nm, peak } = material.reflectance.to_vertex()?;
-        let (dye, fluorescence) = match material.fluorescence {
+    /// Stores a material in single precision.
+    ///
+    /// # Panics
+    ///
+    /// If a dye's number is above 254, which no [`crate::DyeSet`] has.
+    pub fn new(reflectance: Edge, fluorescence: Fluorescence, de2000: f64) -> Self {
+        let Edge { edge_nm, level, slope_per_nm } = reflectance;
+        let (dye, fluorescence) = match fluorescence {
             Fluorescence::None => (0, [0.0; 3]),
             Fluorescence::Dyes { first, weight, concentration } => {
-                (u8::try_from(first).ok()?, [weight, concentration, 0.0])
+                let dye = u8::try_from(first).expect("a ring has at most 255 dyes");
+                (dye, [weight, concentration, 0.0])
             }
             Fluorescence::Analytic { emission_peak_nm, stokes_shift_nm, concentration } => {
                 (0, [emission_peak_nm, stokes_shift_nm, concentration])
             }
         };
-        Some(Self {
-            reflectance: [curvature_per_nm2, shift_nm, peak].map(to_single),
+        Self {
+            reflectance: [edge_nm, level, slope_per_nm].map(to_single),
             dye,
             fluorescence: fluorescence.map(to_single),
             de2000: to_single(de2000),
-        })
+        }
     }
 
-    /// The reflectance's vertex form.
-    pub fn vertex(&self) -> Vertex {
-        let [curvature_per_nm2, shift_nm, peak] = self.reflectance.map(f64::from);
-        Vertex { curvature_per_nm2, shift_nm, peak }
+    /// The reflectance by its steepest point, whose slope is the greatest of all.
+    pub fn edge(&self) -> Edge {
+        let [edge_nm, level, slope_per_nm] = self.reflectance.map(f64::from);
+        Edge { edge_nm, level, slope_per_nm }
     }
 
     /// The material under `model`.
@@ -238,7 +243,7 @@ impl Node {
             },
             _ => Fluorescence::None,
         };
-        Material { reflectance: self.vertex().to_sigmoid(), fluorescence }
+        Material { reflectance: self.edge().to_sigmoid(), fluorescence }
     }
 
     /// The first number that is out of range: its name, itself, and the range.

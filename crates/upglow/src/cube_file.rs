@@ -397,7 +397,7 @@ mod tests {
         let set = DyeSet::named("open8").unwrap();
         let model = Model::Dyes(DyeModel::new(set, DyeOptions::default()).unwrap());
         let node = |i: u16| Node {
-            reflectance: [1e-4, 500.0 + f32::from(i), -0.5],
+            reflectance: [500.0 + f32::from(i), -0.5, 0.01],
             dye: (i % 8) as u8,
             fluorescence: [0.25, 0.5, 0.0],
             de2000: 0.125,

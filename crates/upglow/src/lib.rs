@@ -4,7 +4,7 @@
 //! materials around a color into a [`Mixture`], without allocation, and a mixture answers what a
 //! renderer asks: [`Mixture::reflectance`], [`Mixture::reradiation_per_nm`], [`Mixture::albedo`].
 //!
-//! - reflectance: [`Sigmoid`], [`Vertex`], [`Features`]
+//! - reflectance: [`Sigmoid`], [`Vertex`], [`Features`], [`Edge`]
 //! - fluorescence: [`Model`], [`DyeSet`], [`DyeModel`], [`AnalyticModel`]
 //! - color: [`ModelOnGrid`]
 //! - cubes: [`Cube`], [`Interpolation`]; files are described in `docs/cube-format.md`
@@ -33,6 +33,7 @@ mod bspline;
 mod cube;
 mod cube_file;
 mod dye;
+mod edge;
 mod features;
 mod header;
 mod interpolation;
@@ -45,6 +46,7 @@ mod sigmoid;
 pub use cube::{Cube, CubeError, FitRecord, LookupError, Node};
 pub use cube_file::{ReadCubeError, WriteCubeError, write_whole};
 pub use dye::{DyeSet, DyeSetError};
+pub use edge::Edge;
 pub use features::{FeatureError, Features};
 pub use interpolation::Interpolation;
 pub use material::{Fluorescence, Material};

@@ -19,7 +19,6 @@ pub struct Sigmoid {
 
 /// The same reflectance by the vertex of its parabola: x = curvature·(λ − shift)² + peak.
 ///
-/// Cubes store this form: in single precision it is good to 1e-5, the coefficients to 5e-4 only.
 /// It holds every [`Sigmoid`] but the straight ones, with c0 = 0 and c1 ≠ 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vertex {

@@ -1,0 +1,265 @@
+//! What was typed.
+
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::{Parser, Subcommand};
+use upglow::{Accounting, Cube, Interpolation, Mixing, QuantumYield};
+use upglow_color::{Adaptation, Metric};
+
+/// RGB colors to physically valid spectral materials, with fluorescence where no reflectance shows
+/// the color.
+#[derive(Clone, Debug, Parser)]
+#[command(name = "upglow", version, max_term_width = 100, infer_long_args = false)]
+pub(crate) struct Args {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+    /// Print one JSON document instead of text
+    #[arg(long, global = true)]
+    pub(crate) json: bool,
+    /// Show no progress
+    #[arg(long, short, global = true)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Clone, Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Fit a material for every node of a grid over RGB, and write them as one file
+    Build(Box<BuildArgs>),
+    /// Show what a cube is made of and how well its nodes match their colors
+    Inspect(InspectArgs),
+    /// Recompute everything from a cube's numbers; exit 1 if a physical law is broken
+    Verify(VerifyArgs),
+    /// Show the material of one color
+    #[command(allow_negative_numbers = true)]
+    Color(ColorArgs),
+    /// Write every node as a line of a CSV file
+    Export(ExportArgs),
+}
+
+#[derive(Clone, Debug, clap::Args)]
+pub(crate) struct BuildArgs {
+    /// Cube to write
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) output: PathBuf,
+
+    /// RGB space: acescg, aces2065-1, rec2020, p3-d65, srgb, prophoto, adobe-rgb, xyz, or eight
+    /// numbers Rx,Ry,Gx,Gy,Bx,By,Wx,Wy
+    #[arg(long, default_value = "acescg", help_heading = "What RGB means")]
+    pub(crate) space: String,
+    /// Light: D65, D60, D55, D50, A, E, or a CSV file with the header wavelength_nm,power
+    #[arg(long, default_value = "D65", value_name = "NAME|FILE", help_heading = "What RGB means")]
+    pub(crate) illuminant: String,
+    /// Chromatic adaptation from the white of the space to that of the light: bradford or none
+    #[arg(long, default_value = "bradford", value_name = "NAME", help_heading = "What RGB means")]
+    pub(crate) adapt: Adaptation,
+
+    /// Fluorescence: dyes (measured), analytic (by formula) or reflectance (none)
+    #[arg(long, default_value = "dyes", help_heading = "Model")]
+    pub(crate) model: ModelName,
+    /// Dyes: seed8, open8, wide14, or a folder of CSV files with the header
+    /// wavelength_nm,absorption,emission [default: seed8]
+    #[arg(long, value_name = "NAME|FOLDER", help_heading = "Model")]
+    pub(crate) dyes: Option<String>,
+    /// What dyes conserve when they give light back: energy or photon [default: energy]
+    #[arg(long, value_name = "NAME", help_heading = "Model")]
+    pub(crate) accounting: Option<Accounting>,
+    /// Whether two dyes share what they absorb: pooled or separate [default: pooled]
+    #[arg(long, value_name = "NAME", help_heading = "Model")]
+    pub(crate) mixing: Option<Mixing>,
+    /// Share of absorbed light that comes out: 0 to 1, or measured (dyes only) [default: 1]
+    #[arg(long, value_name = "Q|measured", help_heading = "Model")]
+    pub(crate) quantum_yield: Option<QuantumYield>,
+    /// Load the dyes to this optical density at their peak [default: thin solution]
+    #[arg(long, value_name = "A", value_parser = number, help_heading = "Model")]
+    pub(crate) optical_density: Option<f64>,
+    /// Full width at half maximum of the analytic absorption, 15 to 80 nm [default: 50]
+    #[arg(long, value_name = "NM", value_parser = number, help_heading = "Model")]
+    pub(crate) absorption_fwhm_nm: Option<f64>,
+    /// Full width at half maximum of the analytic emission, 15 to 80 nm [default: 45]
+    #[arg(long, value_name = "NM", value_parser = number, help_heading = "Model")]
+    pub(crate) emission_fwhm_nm: Option<f64>,
+
+    /// Color difference to minimize: de2000, de76 or rgb
+    #[arg(long, default_value = "de2000", value_name = "NAME", help_heading = "Fit")]
+    pub(crate) metric: Metric,
+    /// Nodes along each axis, 2 to 256
+    #[arg(long, default_value = "32", value_name = "N", value_parser = resolution, help_heading = "Fit")]
+    pub(crate) resolution: usize,
+    /// Greatest slope of any reflectance, 0.0001 to 0.2 per nm, or none
+    #[arg(long, default_value = "0.01", value_name = "SLOPE|none", help_heading = "Fit")]
+    pub(crate) slope_max_per_nm: SlopeLimit,
+    /// How often a node that missed its color tries its neighbors' materials [default: 2]
+    #[arg(long, value_name = "N", value_parser = count, help_heading = "Fit")]
+    pub(crate) sweeps: Option<u32>,
+    /// Threads; the file does not depend on it [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = threads, help_heading = "Fit")]
+    pub(crate) threads: Option<NonZeroUsize>,
+}
+
+#[derive(Clone, Debug, clap::Args)]
+pub(crate) struct InspectArgs {
+    /// Cube made by `upglow build`
+    pub(crate) file: PathBuf,
+}
+
+#[derive(Clone, Debug, clap::Args)]
+pub(crate) struct VerifyArgs {
+    /// Cube made by `upglow build`
+    pub(crate) file: PathBuf,
+    /// Colors between the nodes to try
+    #[arg(long, default_value = "1000000", value_name = "N", value_parser = points)]
+    pub(crate) points: usize,
+    /// What stands between the nodes: blend, none, coefficients, features or hybrid
+    #[arg(long, default_value = "blend", value_name = "MODE")]
+    pub(crate) interpolation: Interpolation,
+    /// Where the colors are drawn; the same seed draws the same ones [default: fixed]
+    #[arg(long, value_name = "N", value_parser = seed)]
+    pub(crate) seed: Option<u64>,
+    /// Threads; the result does not depend on it [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = threads)]
+    pub(crate) threads: Option<NonZeroUsize>,
+}
+
+#[derive(Clone, Debug, clap::Args)]
+pub(crate) struct ColorArgs {
+    /// Cube made by `upglow build`
+    pub(crate) file: PathBuf,
+    /// Linear red in the cube's RGB space, 0 to 1; with --direct to 10
+    #[arg(value_name = "R")]
+    pub(crate) red: String,
+    /// Linear green
+    #[arg(value_name = "G")]
+    pub(crate) green: String,
+    /// Linear blue
+    #[arg(value_name = "B")]
+    pub(crate) blue: String,
+    /// What stands between the nodes: blend, none, coefficients, features or hybrid
+    /// [default: blend]
+    #[arg(long, value_name = "MODE", conflicts_with = "direct")]
+    pub(crate) interpolation: Option<Interpolation>,
+    /// Fit this one color as the cube's nodes were fitted, instead of looking it up
+    #[arg(long)]
+    pub(crate) direct: bool,
+    /// Draw the material's curves as an SVG file
+    #[arg(long, value_name = "FILE.svg")]
+    pub(crate) plot: Option<PathBuf>,
+    /// Draw the curves in text although standard output is not a terminal
+    #[arg(long, conflicts_with = "json")]
+    pub(crate) plot_terminal: bool,
+}
+
+#[derive(Clone, Debug, clap::Args)]
+pub(crate) struct ExportArgs {
+    /// Cube made by `upglow build`
+    pub(crate) file: PathBuf,
+    /// CSV file to write
+    #[arg(value_name = "NODES.csv")]
+    pub(crate) output: PathBuf,
+}
+
+/// The kinds of model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ModelName {
+    Dyes,
+    Analytic,
+    Reflectance,
+}
+
+impl FromStr for ModelName {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, Self::Err> {
+        match name {
+            "dyes" => Ok(Self::Dyes),
+            "analytic" => Ok(Self::Analytic),
+            "reflectance" => Ok(Self::Reflectance),
+            _ => Err(format!("unknown model {name:?}, expected dyes, analytic or reflectance")),
+        }
+    }
+}
+
+/// The greatest slope of a reflectance, 1/nm; `None` for no limit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct SlopeLimit(pub(crate) Option<f64>);
+
+impl FromStr for SlopeLimit {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        match text {
+            "none" => Ok(Self(None)),
+            _ => text
+                .parse()
+                .map(|slope| Self(Some(slope)))
+                .map_err(|_| format!("{text:?}, expected a number of 1/nm or none")),
+        }
+    }
+}
+
+fn number(text: &str) -> Result<f64, String> {
+    text.parse().map_err(|_| format!("{text:?}, expected a number"))
+}
+
+fn whole<T: FromStr>(text: &str, expected: &str) -> Result<T, String> {
+    text.parse().map_err(|_| format!("{text:?}, expected {expected}"))
+}
+
+fn count(text: &str) -> Result<u32, String> {
+    whole(text, "a whole number of 0 or more")
+}
+
+fn seed(text: &str) -> Result<u64, String> {
+    whole(text, "a whole number of 0 or more")
+}
+
+fn points(text: &str) -> Result<usize, String> {
+    whole(text, "a whole number of 0 or more")
+}
+
+fn resolution(text: &str) -> Result<usize, String> {
+    let [least, most] = Cube::RESOLUTIONS;
+    let expected = format!("a whole number from {least} to {most}");
+    let found = whole(text, &expected)?;
+    if (least..=most).contains(&found) {
+        Ok(found)
+    } else {
+        Err(format!("{found}, expected {expected}"))
+    }
+}
+
+/// More threads than this are a typing error: they would take the machine's memory.
+const MOST_THREADS: usize = 1024;
+
+fn threads(text: &str) -> Result<NonZeroUsize, String> {
+    let expected = format!("a whole number from 1 to {MOST_THREADS}");
+    let found: NonZeroUsize = whole(text, &expected)?;
+    if found.get() <= MOST_THREADS { Ok(found) } else { Err(format!("{found}, expected {expected}")) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_arguments_fit_together() {
+        Args::command().debug_assert();
+    }
+
+    #[test]
+    fn no_slope_limit_has_a_word() {
+        assert_eq!("none".parse(), Ok(SlopeLimit(None)));
+        assert_eq!("0.02".parse(), Ok(SlopeLimit(Some(0.02))));
+        assert!("steep".parse::<SlopeLimit>().is_err());
+    }
+
+    #[test]
+    fn a_resolution_out_of_range_is_refused() {
+        assert_eq!(resolution("32"), Ok(32));
+        for text in ["1", "257", "-4", "many", "4.5"] {
+            assert!(resolution(text).is_err_and(|e| e.ends_with("from 2 to 256")), "{text}");
+        }
+    }
+}
