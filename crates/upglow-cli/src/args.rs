@@ -114,9 +114,9 @@ pub(crate) struct VerifyArgs {
     /// What stands between the nodes: blend, none, coefficients, features or hybrid
     #[arg(long, default_value = "blend", value_name = "MODE")]
     pub(crate) interpolation: Interpolation,
-    /// Where the colors are drawn; the same seed draws the same ones [default: fixed]
-    #[arg(long, value_name = "N", value_parser = seed)]
-    pub(crate) seed: Option<u64>,
+    /// Where the random colors start; the same seed draws the same ones
+    #[arg(long, default_value = "0", value_name = "N", value_parser = seed)]
+    pub(crate) seed: u64,
     /// Threads; the result does not depend on it [default: one for each core]
     #[arg(long, value_name = "N", value_parser = threads)]
     pub(crate) threads: Option<NonZeroUsize>,
@@ -167,16 +167,25 @@ pub(crate) enum ModelName {
     Reflectance,
 }
 
+impl ModelName {
+    /// The word that is typed.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Dyes => "dyes",
+            Self::Analytic => "analytic",
+            Self::Reflectance => "reflectance",
+        }
+    }
+}
+
 impl FromStr for ModelName {
     type Err = String;
 
     fn from_str(name: &str) -> Result<Self, Self::Err> {
-        match name {
-            "dyes" => Ok(Self::Dyes),
-            "analytic" => Ok(Self::Analytic),
-            "reflectance" => Ok(Self::Reflectance),
-            _ => Err(format!("unknown model {name:?}, expected dyes, analytic or reflectance")),
-        }
+        [Self::Dyes, Self::Analytic, Self::Reflectance]
+            .into_iter()
+            .find(|model| model.name() == name)
+            .ok_or_else(|| format!("unknown model {name:?}, expected dyes, analytic or reflectance"))
     }
 }
 

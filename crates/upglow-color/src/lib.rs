@@ -52,7 +52,7 @@ pub use grid::{Grid, GridError};
 pub use illuminant::{Illuminant, IlluminantError};
 pub use lab::{Lab, lab_from_xyz, lab_jacobian};
 pub use matrix::Matrix3;
-pub use metric::{Metric, UnknownMetric};
+pub use metric::{Goal, Metric, UnknownMetric};
 pub use observer::Observer;
 pub use rgb_space::{RgbSpace, RgbSpaceError};
 pub use spectrum::{Spectrum, SpectrumCsvError, SpectrumError, read_columns};

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use crate::{Colorimetry, Matrix3, Xyz, ciede2000, ciede2000_residuals, lab_jacobian};
+use crate::{Colorimetry, Lab, Matrix3, Xyz, ciede2000_residuals, lab_jacobian};
 
 /// How far one color is from another.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -27,37 +27,69 @@ impl Metric {
 
     /// The distance between two colors under `colorimetry`.
     pub fn distance(self, colorimetry: &Colorimetry, target: Xyz, sample: Xyz) -> f64 {
-        match self {
-            Self::Rgb => norm(self.residuals(colorimetry, target, sample).0),
-            Self::De76 => colorimetry.lab_from_xyz(sample).de76(colorimetry.lab_from_xyz(target)),
-            Self::De2000 => {
-                ciede2000(colorimetry.lab_from_xyz(target), colorimetry.lab_from_xyz(sample))
-            }
+        norm(self.goal(colorimetry, target).residuals(sample).0)
+    }
+
+    /// Everything that distances to one target share.
+    pub fn goal(self, colorimetry: &Colorimetry, target: Xyz) -> Goal {
+        Goal {
+            metric: self,
+            white: colorimetry.white(),
+            scaled_rgb_from_xyz: Matrix3::diagonal([RGB_SCALE; 3])
+                * colorimetry.rgb_from_xyz_matrix(),
+            xyz: target,
+            lab: colorimetry.lab_from_xyz(target),
         }
+    }
+}
+
+/// A color to be reached, and the metric that says how far another is from it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Goal {
+    metric: Metric,
+    white: Xyz,
+    scaled_rgb_from_xyz: Matrix3,
+    xyz: Xyz,
+    lab: Lab,
+}
+
+impl Goal {
+    /// The color to be reached.
+    pub fn xyz(&self) -> Xyz {
+        self.xyz
+    }
+
+    /// The color to be reached, in CIELAB.
+    pub fn lab(&self) -> Lab {
+        self.lab
+    }
+
+    /// The same color under another metric.
+    #[must_use]
+    pub fn under(self, metric: Metric) -> Self {
+        Self { metric, ..self }
+    }
+
+    /// The distance of `sample`.
+    pub fn distance(&self, sample: Xyz) -> f64 {
+        norm(self.residuals(sample).0)
     }
 
     /// Three numbers whose squares add up to the square of the distance, and their derivatives by
     /// the sample, `[residual][X Y Z]`.
-    pub fn residuals(
-        self,
-        colorimetry: &Colorimetry,
-        target: Xyz,
-        sample: Xyz,
-    ) -> ([f64; 3], Matrix3) {
-        match self {
-            Self::Rgb => {
-                let scaled = Matrix3::diagonal([RGB_SCALE; 3]) * colorimetry.rgb_from_xyz_matrix();
-                (scaled * [0, 1, 2].map(|k| sample.0[k] - target.0[k]), scaled)
+    pub fn residuals(&self, sample: Xyz) -> ([f64; 3], Matrix3) {
+        match self.metric {
+            Metric::Rgb => {
+                let difference = [0, 1, 2].map(|k| sample.0[k] - self.xyz.0[k]);
+                (self.scaled_rgb_from_xyz * difference, self.scaled_rgb_from_xyz)
             }
-            Self::De76 => {
-                let goal = colorimetry.lab_from_xyz(target);
-                let (lab, by_xyz) = lab_jacobian(sample, colorimetry.white());
-                ([lab.l - goal.l, lab.a - goal.a, lab.b - goal.b], by_xyz)
+            Metric::De76 => {
+                let (lab, by_xyz) = lab_jacobian(sample, self.white);
+                ([lab.l - self.lab.l, lab.a - self.lab.a, lab.b - self.lab.b], by_xyz)
             }
-            Self::De2000 => {
-                let goal = colorimetry.lab_from_xyz(target);
-                let (lab, lab_by_xyz) = lab_jacobian(sample, colorimetry.white());
-                let (residuals, by_lab) = ciede2000_residuals(goal, lab);
+            Metric::De2000 => {
+                let (lab, lab_by_xyz) = lab_jacobian(sample, self.white);
+                let (residuals, by_lab) = ciede2000_residuals(self.lab, lab);
                 (residuals, by_lab * lab_by_xyz)
             }
         }
@@ -110,7 +142,8 @@ mod tests {
         let colorimetry = Contract::default().on(Grid::FIT);
         let (target, sample) = (Xyz([0.4, 0.3, 0.2]), [0.35, 0.33, 0.31]);
         for metric in Metric::ALL {
-            let (residuals, jacobian) = metric.residuals(&colorimetry, target, Xyz(sample));
+            let goal = metric.goal(&colorimetry, target);
+            let (residuals, jacobian) = goal.residuals(Xyz(sample));
             let distance = metric.distance(&colorimetry, target, Xyz(sample));
             // Rounding only.
             assert!((norm(residuals) - distance).abs() < 1e-10, "{metric}");
@@ -118,7 +151,7 @@ mod tests {
                 let moved = |by: f64| {
                     let mut p = sample;
                     p[k] += by;
-                    metric.residuals(&colorimetry, target, Xyz(p)).0
+                    goal.residuals(Xyz(p)).0
                 };
                 let (up, down) = (moved(STEP), moved(-STEP));
                 for r in 0..3 {

@@ -1,8 +1,13 @@
 //! Builds cubes.
-use upglow::{Cube, CubeError, Model};
-use upglow_color::Contract;
 
-use crate::{FitOptions, FitOptionsError, Watch};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use rayon::prelude::*;
+use upglow::{Cube, CubeError, FitRecord, Fluorescence, Model, Node};
+use upglow_color::{Contract, LinearRgb, Metric};
+
+use crate::fitter::EXACT;
+use crate::{Fit, FitOptions, FitOptionsError, Fitter, Progress, Watch};
 
 /// Why no cube was built.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -21,17 +26,157 @@ pub enum BuildError {
 
 /// Fits a material for every node of a cube, on all threads of the current rayon pool.
 ///
-/// The result does not depend on the number of threads.
+/// First each node alone; then, in as many sweeps as the options say, each node that missed its
+/// color tries the materials of its six neighbors, as they were before the sweep. So the result
+/// does not depend on the number of threads.
 ///
 /// # Errors
 ///
 /// [`BuildError`] if an option is out of range or `watch` stopped the work.
 pub fn build_cube(
-    _contract: &Contract,
-    _model: &Model,
-    _options: FitOptions,
-    _resolution: usize,
-    _watch: &dyn Watch,
+    contract: &Contract,
+    model: &Model,
+    options: FitOptions,
+    resolution: usize,
+    watch: &dyn Watch,
 ) -> Result<Cube, BuildError> {
-    Err(BuildError::Stopped)
+    let lattice = Lattice::new(resolution)?;
+    let fitter = Fitter::new(contract, model, options)?;
+    let mut fits = each_node(lattice, "fitting", watch, |index| {
+        fitter.fit(lattice.rgb(index)).expect("nodes are in 0..=1")
+    })?;
+    for _ in 0..options.sweeps {
+        let before = fits;
+        fits = each_node(lattice, "asking neighbors", watch, |index| {
+            sweep_node(&fitter, lattice, &before, index)
+        })?;
+        if fits == before {
+            break;
+        }
+    }
+    let nodes = each_node(lattice, "measuring", watch, |index| {
+        stored_node(&fitter, lattice.rgb(index), &fits[index])
+    })?;
+    let fit = FitRecord {
+        metric: options.metric.to_string(),
+        slope_max_per_nm: options.slope_max_per_nm,
+        sweeps: options.sweeps,
+    };
+    Ok(Cube::new(contract.clone(), model.clone(), fit, resolution, nodes)?)
+}
+
+/// The nodes of a cube, `[blue][green][red]`.
+#[derive(Clone, Copy, Debug)]
+struct Lattice {
+    resolution: usize,
+}
+
+impl Lattice {
+    fn new(resolution: usize) -> Result<Self, CubeError> {
+        let [least, most] = Cube::RESOLUTIONS;
+        if (least..=most).contains(&resolution) {
+            Ok(Self { resolution })
+        } else {
+            Err(CubeError::Resolution { found: resolution })
+        }
+    }
+
+    fn len(self) -> usize {
+        self.resolution.pow(3)
+    }
+
+    fn rgb(self, index: usize) -> LinearRgb {
+        let n = self.resolution;
+        let last = (n - 1) as f64;
+        LinearRgb([index % n, index / n % n, index / (n * n)].map(|i| i as f64 / last))
+    }
+
+    /// The up to six nodes beside one.
+    fn neighbors(self, index: usize) -> impl Iterator<Item = usize> {
+        let n = self.resolution;
+        [1, n, n * n].into_iter().flat_map(move |stride| {
+            let place = index / stride % n;
+            let below = (place > 0).then(|| index - stride);
+            let above = (place + 1 < n).then(|| index + stride);
+            below.into_iter().chain(above)
+        })
+    }
+}
+
+/// How many nodes a thread takes at a time: enough that telling progress costs nothing.
+const BATCH: usize = 64;
+
+/// `work` for each node, in the order of the nodes.
+fn each_node<T: Send + Copy>(
+    lattice: Lattice,
+    stage: &'static str,
+    watch: &dyn Watch,
+    work: impl Fn(usize) -> T + Sync,
+) -> Result<Vec<T>, BuildError> {
+    let total = lattice.len();
+    let done = AtomicUsize::new(0);
+    let batches: Option<Vec<Vec<T>>> = (0..total.div_ceil(BATCH))
+        .into_par_iter()
+        .map(|batch| {
+            if watch.stopped() {
+                return None;
+            }
+            let range = batch * BATCH..total.min((batch + 1) * BATCH);
+            let finished = range.len();
+            let results = range.map(&work).collect();
+            let done = done.fetch_add(finished, Ordering::Relaxed) + finished;
+            watch.progress(Progress { stage, done, total });
+            Some(results)
+        })
+        .collect();
+    batches.map(|batches| batches.concat()).ok_or(BuildError::Stopped)
+}
+
+/// One node in a sweep: what it had, or better from its neighbors.
+fn sweep_node(fitter: &Fitter, lattice: Lattice, before: &[Fit], index: usize) -> Fit {
+    let known = before[index];
+    if known.de2000 <= EXACT {
+        return known;
+    }
+    let mut neighbors: Vec<Fit> = Vec::with_capacity(6);
+    for neighbor in lattice.neighbors(index).map(|i| before[i]) {
+        if !is_alike(&neighbor, &known) && !neighbors.iter().any(|n| is_alike(n, &neighbor)) {
+            neighbors.push(neighbor);
+        }
+    }
+    let color = fitter.model().colorimetry().xyz_from_rgb(lattice.rgb(index));
+    fitter.improve(color, known, &neighbors)
+}
+
+/// Whether two materials lead to the same place: nothing is gained by following both.
+fn is_alike(a: &Fit, b: &Fit) -> bool {
+    /// Weights nearer than this end in the same mixture; smaller follows more and gains nothing.
+    const WEIGHTS: f64 = 0.3;
+    /// Emission peaks and Stokes shifts nearer than this, nm.
+    const BELLS_NM: f64 = 20.0;
+    let same_shape = (a.reflectance.level > 0.0) == (b.reflectance.level > 0.0);
+    same_shape
+        && match (a.fluorescence, b.fluorescence) {
+            (Fluorescence::None, Fluorescence::None) => true,
+            (
+                Fluorescence::Dyes { first: i, weight: v, .. },
+                Fluorescence::Dyes { first: j, weight: w, .. },
+            ) => i == j && (v - w).abs() < WEIGHTS,
+            (
+                Fluorescence::Analytic { emission_peak_nm: p, stokes_shift_nm: s, .. },
+                Fluorescence::Analytic { emission_peak_nm: q, stokes_shift_nm: t, .. },
+            ) => (p - q).abs() < BELLS_NM && (s - t).abs() < BELLS_NM,
+            _ => false,
+        }
+}
+
+/// A fit as the cube keeps it, with the color difference of what is kept.
+fn stored_node(fitter: &Fitter, rgb: LinearRgb, fit: &Fit) -> Node {
+    let model = fitter.model();
+    let target = model.colorimetry().xyz_from_rgb(rgb);
+    let mut node = Node::new(fit.reflectance, fit.fluorescence, 0.0);
+    let color = model.color(node.material(model.model()));
+    let de2000 = Metric::De2000.distance(model.colorimetry(), target, color);
+    node = Node::new(fit.reflectance, fit.fluorescence, de2000);
+    node
 }

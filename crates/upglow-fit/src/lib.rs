@@ -1,16 +1,45 @@
-//! From colors to materials: fits one color, builds whole cubes, verifies what was built.
+//! The way from colors to materials: fits one color, builds whole cubes, verifies what was built.
+//!
+//! - one color: [`Fitter`], [`Fit`], [`Standing`]
+//! - a cube: [`build_cube`], [`CubeSummary`], [`verify`]
+//! - underneath: [`solve`], a bounded Levenberg-Marquardt solver for [`Residuals`]
+//!
+//! # Examples
+//!
+//! ```
+//! use upglow::{DyeModel, DyeOptions, DyeSet, Model};
+//! use upglow_color::{Contract, LinearRgb};
+//! use upglow_fit::{FitOptions, Fitter};
+//!
+//! let model = Model::Dyes(DyeModel::new(DyeSet::named("seed8")?, DyeOptions::default())?);
+//! let fitter = Fitter::new(&Contract::default(), &model, FitOptions::default())?;
+//! let magenta = fitter.fit(LinearRgb([0.9, 0.0, 0.9]))?;
+//! assert!(magenta.fluorescence.concentration() > 0.0);
+//! let gray = fitter.fit(LinearRgb([0.5, 0.5, 0.5]))?;
+//! assert_eq!(gray.fluorescence.concentration(), 0.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Out of scope: what a renderer needs at run time (crate `upglow`), files' names, printing.
+
 mod build;
 mod fitter;
 mod options;
+mod parabola;
+mod problem;
 mod progress;
+mod solver;
 mod standing;
+mod starts;
 mod summary;
+mod sums;
 mod verify;
 
 pub use build::{BuildError, build_cube};
 pub use fitter::{ColorError, Fit, Fitter};
 pub use options::{FitOptions, FitOptionsError};
 pub use progress::{Progress, Unwatched, Watch};
+pub use solver::{Jacobian, Residuals, SolverOptions, Stop, Summary, jacobian_error, solve};
 pub use standing::Standing;
 pub use summary::CubeSummary;
 pub use verify::{Check, Offender, Place, Stopped, Verdict, VerifyOptions, VerifyReport, verify};

@@ -33,8 +33,7 @@ impl CubeSummary {
     pub fn of(cube: &Cube) -> Self {
         let found: Vec<f64> = cube.nodes().iter().map(|node| node.de2000.into()).collect();
         let within = |limit: f64| found.iter().filter(|&&d| d <= limit).count();
-        let glows =
-            |&index: &usize| cube.node_material(index).fluorescence.concentration() > 0.0;
+        let glows = |&index: &usize| cube.node_material(index).fluorescence.concentration() > 0.0;
         let spread = Spread::of(found.clone());
         Self {
             nodes: found.len(),

@@ -87,7 +87,7 @@ impl<'m> Mixture<'m> {
     }
 
     /// The color of the mixture under the light of `sums`, which must be of the same model.
-    pub fn color(&self, sums: &ModelOnGrid<'_>) -> Xyz {
+    pub fn color(&self, sums: &ModelOnGrid) -> Xyz {
         let mut sum = [0.0; 3];
         for (weight, material) in self.parts() {
             let color = sums.color(material).0;

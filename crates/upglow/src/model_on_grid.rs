@@ -9,9 +9,9 @@ use crate::{Accounting, AnalyticModel, DyeModel, Fluorescence, Material, Mixing,
 /// The color of a material is
 /// `k ∫ x̄ȳz̄ ((1 − c·a)·r·L + c·Q·A·ê) dλ`, with `A = ∫ a·L dλ`; here `k` is inside the weights.
 #[derive(Clone, Debug)]
-pub struct ModelOnGrid<'a> {
-    model: &'a Model,
-    colorimetry: &'a Colorimetry,
+pub struct ModelOnGrid {
+    model: Model,
+    colorimetry: Colorimetry,
     wavelengths_nm: Vec<f64>,
     dyes: Vec<SampledDye>,
 }
@@ -21,6 +21,8 @@ pub struct ModelOnGrid<'a> {
 struct SampledDye {
     /// Absorptance at concentration 1, `[wavelength]`.
     absorption: Vec<f64>,
+    /// What that absorbs of the light.
+    absorbed: f64,
     /// Color of one unit of emitted energy.
     stimulus: [f64; 3],
     quantum_yield: f64,
@@ -36,9 +38,9 @@ pub struct Emitted<const N: usize> {
     pub derivatives: [[f64; 3]; N],
 }
 
-impl<'a> ModelOnGrid<'a> {
+impl ModelOnGrid {
     /// Samples the model's curves on the grid of `colorimetry`.
-    pub fn new(model: &'a Model, colorimetry: &'a Colorimetry) -> Self {
+    pub fn new(model: &Model, colorimetry: &Colorimetry) -> Self {
         let grid = colorimetry.grid();
         let dyes = match model {
             Model::Dyes(model) => {
@@ -46,17 +48,22 @@ impl<'a> ModelOnGrid<'a> {
             }
             _ => Vec::new(),
         };
-        Self { model, colorimetry, wavelengths_nm: grid.wavelengths_nm().collect(), dyes }
+        Self {
+            model: model.clone(),
+            colorimetry: colorimetry.clone(),
+            wavelengths_nm: grid.wavelengths_nm().collect(),
+            dyes,
+        }
     }
 
     /// The model.
-    pub fn model(&self) -> &'a Model {
-        self.model
+    pub fn model(&self) -> &Model {
+        &self.model
     }
 
     /// The light and observer.
-    pub fn colorimetry(&self) -> &'a Colorimetry {
-        self.colorimetry
+    pub fn colorimetry(&self) -> &Colorimetry {
+        &self.colorimetry
     }
 
     /// Wavelengths of every sum, nm.
@@ -128,18 +135,16 @@ impl<'a> ModelOnGrid<'a> {
     /// Energy that one dye absorbs and may give back around `mean_nm`, and its derivative by
     /// `mean_nm`, 1/nm.
     fn absorbed(&self, dye: &SampledDye, accounting: Accounting, mean_nm: f64) -> (f64, f64) {
+        if accounting == Accounting::Energy {
+            return (dye.absorbed, 0.0);
+        }
         let samples = dye.absorption.iter().zip(self.colorimetry.irradiance());
-        let mut energy = 0.0;
-        let mut below_mean = 0.0;
+        let (mut energy, mut below_mean) = (0.0, 0.0);
         for ((a, e), &nm) in samples.zip(&self.wavelengths_nm) {
-            let taken = a * e;
-            energy += taken * accounting.share(nm, mean_nm);
-            below_mean += if nm < mean_nm { taken * nm } else { 0.0 };
+            energy += a * e * accounting.share(nm, mean_nm);
+            below_mean += if nm < mean_nm { a * e * nm } else { 0.0 };
         }
-        match accounting {
-            Accounting::Energy => (energy, 0.0),
-            Accounting::Photon => (energy, -below_mean / (mean_nm * mean_nm)),
-        }
+        (energy, -below_mean / (mean_nm * mean_nm))
     }
 
     /// What bells emit at concentration 1; the parameters are the emission's peak and the Stokes
@@ -185,7 +190,7 @@ impl<'a> ModelOnGrid<'a> {
             .enumerate()
             .map(|(i, &nm)| (1.0 - absorbed(i)) * material.reflectance.at(nm));
         let mut color = self.colorimetry.xyz_from_reflectance(reflected).0;
-        let emitted = match (material.fluorescence, self.model) {
+        let emitted = match (material.fluorescence, &self.model) {
             (Fluorescence::Dyes { first, weight, .. }, Model::Dyes(model)) => {
                 self.emitted_by_dyes(model, first, weight).color
             }
@@ -202,7 +207,7 @@ impl<'a> ModelOnGrid<'a> {
 
     /// Share of light that the fluorescence absorbs at each wavelength of the grid.
     fn absorbed_share(&self, fluorescence: Fluorescence) -> impl Fn(usize) -> f64 + '_ {
-        move |i| match (fluorescence, self.model) {
+        move |i| match (fluorescence, &self.model) {
             (Fluorescence::Dyes { first, weight, concentration }, Model::Dyes(model)) => {
                 let at = |dye: usize| self.dyes[dye].absorption[i];
                 concentration * ((1.0 - weight) * at(first) + weight * at(model.partner(first)))
@@ -229,8 +234,11 @@ impl SampledDye {
         for (e, m) in emission.values().iter().zip(colorimetry.matching()) {
             (0..3).for_each(|k| stimulus[k] += e / area * m[k]);
         }
+        let absorption = curves.absorption.resampled(grid).values().to_vec();
+        let absorbed = absorption.iter().zip(colorimetry.irradiance()).map(|(a, e)| a * e).sum();
         Self {
-            absorption: curves.absorption.resampled(grid).values().to_vec(),
+            absorption,
+            absorbed,
             stimulus,
             quantum_yield: curves.quantum_yield,
             mean_emission_nm: curves.mean_emission_nm,

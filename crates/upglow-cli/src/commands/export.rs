@@ -1,0 +1,139 @@
+//! `upglow export`: every node as a line of a CSV file.
+
+use std::fmt::Write as _;
+
+use serde::Serialize;
+use upglow::{Cube, Model, Node};
+
+use crate::args::ExportArgs;
+use crate::failure::Failure;
+use crate::files;
+use crate::output::{Format, Lines, Report};
+
+const HEADER: &str = "r,g,b,c0,c1,c2,shift_nm,width_nm,slope_per_nm,dye_a,dye_b,weight,\
+                      concentration,emission_peak_nm,stokes_shift_nm,de2000";
+
+#[derive(Clone, Debug, Serialize)]
+struct ExportReport {
+    file: String,
+    bytes: usize,
+    nodes: usize,
+}
+
+pub(crate) fn run(args: &ExportArgs, format: Format) -> Result<(), Failure> {
+    files::check_output(&args.output)?;
+    files::check_distinct(&args.file, &args.output)?;
+    let cube = files::read_cube(&args.file)?;
+    let text = csv(&cube);
+    files::write(&args.output, text.as_bytes())?;
+    format.print(&ExportReport {
+        file: args.output.display().to_string(),
+        bytes: text.len(),
+        nodes: cube.nodes().len(),
+    })
+}
+
+/// All nodes, red fastest. Numbers are printed with as many digits as lead back to them.
+fn csv(cube: &Cube) -> String {
+    let mut text = HEADER.to_owned() + "\n";
+    for (index, node) in cube.nodes().iter().enumerate() {
+        let rgb = cube.node_rgb(index).0.map(|v| v.to_string()).join(",");
+        let shape = shape_cells(node);
+        let fluorescence = fluorescence_cells(node, cube.model()).join(",");
+        // Writing to a string does not fail.
+        let _ = writeln!(text, "{rgb},{shape},{fluorescence},{}", node.de2000);
+    }
+    text
+}
+
+/// c0, c1, c2, shift, width, slope; the last three empty for a flat reflectance.
+fn shape_cells(node: &Node) -> String {
+    let vertex = node.vertex();
+    let sigmoid = vertex.to_sigmoid();
+    let features = vertex.to_features().map_or_else(
+        || ",,".to_owned(),
+        |f| format!("{},{},{}", f.shift_nm, f.width_nm, f.slope_per_nm),
+    );
+    format!("{},{},{},{features}", sigmoid.c0, sigmoid.c1, sigmoid.c2)
+}
+
+/// First and second dye, weight, concentration, emission peak, Stokes shift: empty where the model
+/// has none, all empty where the node does not fluoresce.
+fn fluorescence_cells(node: &Node, model: &Model) -> [String; 6] {
+    let [first, second, third] = node.fluorescence;
+    let number = |value: f32| value.to_string();
+    let empty = String::new;
+    match model {
+        Model::Dyes(dyes) if second > 0.0 => {
+            let name = |dye: usize| quoted(&dyes.set().dyes()[dye].name);
+            let dye = usize::from(node.dye);
+            let names = [name(dye), name(dyes.partner(dye))];
+            let [dye_a, dye_b] = names;
+            [dye_a, dye_b, number(first), number(second), empty(), empty()]
+        }
+        Model::Analytic(_) if third > 0.0 => {
+            [empty(), empty(), empty(), number(third), number(first), number(second)]
+        }
+        _ => [empty(), empty(), empty(), empty(), empty(), empty()],
+    }
+}
+
+/// A cell of text; in double quotes where it holds a separator.
+fn quoted(text: &str) -> String {
+    if text.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.to_owned()
+    }
+}
+
+impl Report for ExportReport {
+    fn text(&self) -> String {
+        let mut lines = Lines::default();
+        lines
+            .add("nodes", self.nodes)
+            .add("file", format_args!("{}, {}", self.file, files::size(self.bytes)));
+        lines.to_string()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use upglow::{DyeModel, DyeOptions, DyeSet, FitRecord};
+    use upglow_color::Contract;
+
+    fn lines(model: Model, node: Node) -> Vec<String> {
+        let fit = FitRecord { metric: "de2000".into(), slope_max_per_nm: None, sweeps: 0 };
+        let cube = Cube::new(Contract::default(), model, fit, 2, vec![node; 8]).unwrap();
+        csv(&cube).lines().map(str::to_owned).collect()
+    }
+
+    #[test]
+    fn each_node_is_a_line_of_as_many_cells_as_the_header() {
+        let set = DyeSet::named("seed8").unwrap();
+        let model = Model::Dyes(DyeModel::new(set, DyeOptions::default()).unwrap());
+        let node = Node {
+            reflectance: [1e-4, 500.0, -0.5],
+            dye: 7,
+            fluorescence: [0.1, 0.7, 0.0],
+            de2000: 0.3,
+        };
+        let lines = lines(model, node);
+        assert_eq!(lines.len(), 9);
+        assert!(lines.iter().all(|line| line.matches(',').count() == 15), "{lines:?}");
+        assert!(lines[8].starts_with("1,1,1,") && lines[8].ends_with(",0.1,0.7,,,0.3"));
+    }
+
+    #[test]
+    fn a_flat_node_without_fluorescence_has_empty_cells() {
+        let lines = lines(Model::Reflectance, Node::default());
+        assert_eq!(lines[1], "0,0,0,0,0,0,,,,,,,,,,0");
+    }
+
+    #[test]
+    fn text_with_a_separator_is_quoted() {
+        assert_eq!(quoted("a,\"b\""), "\"a,\"\"b\"\"\"");
+        assert_eq!(quoted("ATTO_390"), "ATTO_390");
+    }
+}

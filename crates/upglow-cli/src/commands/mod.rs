@@ -1,0 +1,39 @@
+//! The commands, one a file.
+
+mod build;
+mod color;
+mod color_report;
+mod export;
+mod inspect;
+mod summary;
+mod verify;
+
+use std::num::NonZeroUsize;
+
+use crate::args::{Args, Command};
+use crate::failure::Failure;
+use crate::output::Format;
+
+/// Does what was asked for.
+pub(crate) fn run(args: Args) -> Result<(), Failure> {
+    let format = if args.json { Format::Json } else { Format::Text };
+    match args.command {
+        Command::Build(build) => build::run(&build, format, args.quiet),
+        Command::Inspect(inspect) => inspect::run(&inspect, format),
+        Command::Verify(verify) => verify::run(&verify, format, args.quiet),
+        Command::Color(color) => color::run(&color, format),
+        Command::Export(export) => export::run(&export, format),
+    }
+}
+
+/// Runs `work` on so many threads; one for each core without a number.
+fn on_threads<T: Send>(
+    threads: Option<NonZeroUsize>,
+    work: impl FnOnce() -> T + Send,
+) -> Result<T, Failure> {
+    let count = threads.map_or(0, NonZeroUsize::get);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build().map_err(|error| {
+        Failure::input("--threads", format_args!("{error}, expected fewer threads"))
+    })?;
+    Ok(pool.install(work))
+}

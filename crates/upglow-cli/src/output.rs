@@ -1,0 +1,145 @@
+//! Results on standard output: text for people, or one JSON document.
+
+use std::fmt::{self, Display, Write as _};
+use std::io::{self, Write as _};
+
+use serde::Serialize;
+
+use crate::failure::{Failure, io_message};
+
+/// What a command has found.
+pub(crate) trait Report: Serialize {
+    /// The text for people, with a final line break.
+    fn text(&self) -> String;
+}
+
+/// How results are printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Format {
+    Text,
+    Json,
+}
+
+impl Format {
+    /// Prints a report on standard output.
+    pub(crate) fn print(self, report: &impl Report) -> Result<(), Failure> {
+        let text = match self {
+            Self::Text => report.text(),
+            Self::Json => serde_json::to_string_pretty(report)
+                .map(|json| json + "\n")
+                .map_err(|error| Failure::input("standard output", error))?,
+        };
+        let mut stdout = io::stdout().lock();
+        stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()).map_err(|error| {
+            match error.kind() {
+                io::ErrorKind::BrokenPipe => Failure::OutputClosed,
+                _ => {
+                    let found = io_message(&error);
+                    Failure::input("standard output", format_args!("{found}, expected room"))
+                }
+            }
+        })
+    }
+}
+
+/// Says on standard error what the user should know although the work goes on.
+pub(crate) fn warn(message: impl Display) {
+    eprintln!("upglow: warning: {message}");
+}
+
+/// Lines of names and values, the values in one column.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Lines {
+    rows: Vec<(String, String)>,
+}
+
+impl Lines {
+    /// Adds a line. An empty name continues the line before.
+    pub(crate) fn add(&mut self, name: impl Display, value: impl Display) -> &mut Self {
+        let name = name.to_string();
+        let name = if name.is_empty() { name } else { name + ":" };
+        self.rows.push((name, value.to_string()));
+        self
+    }
+}
+
+impl Display for Lines {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let width = self.rows.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
+        for (name, value) in &self.rows {
+            writeln!(f, "{}", format!("{name:width$}  {value}").trim_end())?;
+        }
+        Ok(())
+    }
+}
+
+/// A table with a head; the first column is text, the others are set flush right.
+#[derive(Clone, Debug)]
+pub(crate) struct Table {
+    rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    pub(crate) fn new<const N: usize>(head: [&str; N]) -> Self {
+        Self { rows: vec![head.map(str::to_owned).to_vec()] }
+    }
+
+    pub(crate) fn add<const N: usize>(&mut self, row: [String; N]) {
+        self.rows.push(row.to_vec());
+    }
+}
+
+impl Display for Table {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let columns = self.rows[0].len();
+        let width = |column: usize| {
+            self.rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0)
+        };
+        let widths: Vec<usize> = (0..columns).map(width).collect();
+        for row in &self.rows {
+            let mut line = String::new();
+            for (column, (cell, &width)) in row.iter().zip(&widths).enumerate() {
+                match column {
+                    0 => write!(line, "{cell:width$}")?,
+                    _ => write!(line, "  {cell:>width$}")?,
+                }
+            }
+            writeln!(f, "{}", line.trim_end())?;
+        }
+        Ok(())
+    }
+}
+
+/// Three numbers to four decimals, in columns.
+pub(crate) fn triple(values: [f64; 3]) -> String {
+    values.map(|v| format!("{:7.4}", without_negative_zero(v, 4))).join("  ")
+}
+
+/// A number that prints as -0.0000 is a small rounding error: it becomes 0.
+fn without_negative_zero(value: f64, decimals: i32) -> f64 {
+    if value.abs() < 0.5 * 10f64.powi(-decimals) { 0.0 } else { value }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_stand_in_one_column() {
+        let mut lines = Lines::default();
+        lines.add("model", "dyes").add("RGB space", "acescg").add("", "more");
+        assert_eq!(lines.to_string(), "model:      dyes\nRGB space:  acescg\n            more\n");
+    }
+
+    #[test]
+    fn tables_are_set_flush_right_after_the_first_column() {
+        let mut table = Table::new(["light", "X"]);
+        table.add(["D65".into(), "0.95".into()]);
+        assert_eq!(table.to_string(), "light     X\nD65    0.95\n");
+    }
+
+    #[test]
+    fn zero_has_no_sign() {
+        assert_eq!(triple([-1e-9, 0.5, -0.25]), " 0.0000   0.5000  -0.2500");
+    }
+}

@@ -1,0 +1,274 @@
+//! The least-squares problems: what must become zero for a material to show its color.
+
+use upglow::{AnalyticModel, DyeModel, Emitted, ModelOnGrid};
+use upglow_color::{Goal, Matrix3, Xyz};
+
+use crate::parabola::{Chart, edge_chart, free_chart};
+use crate::solver::{Jacobian, Residuals};
+use crate::sums::{CLEAR, Lanes, Reflected, Sums, lanes_from};
+
+/// In which coordinates the reflectance moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Shape {
+    /// The parabola's coefficients, without any limit on the slope.
+    Free,
+    /// Edge, level and slope relative to this limit, 1/nm.
+    Edge {
+        /// The limit, 1/nm.
+        slope_limit_per_nm: f64,
+    },
+}
+
+/// Coefficients beyond this are steps between two samples.
+const FREE_BOUND: f64 = 1e3;
+/// How far from 565 nm a steepest point may lie, in 100 nm: further out nobody sees it.
+const EDGE_BOUND: f64 = 4.0;
+/// Greatest level of the steepest point: at the slope limit 0.01/nm the extremum is then 2.5 nm
+/// away, half a step of the sums. Larger lets a fit hide a spike between two samples.
+const LEVEL_BOUND: f64 = 2.5;
+
+impl Shape {
+    fn chart(self, numbers: [f64; 3]) -> Chart {
+        match self {
+            Self::Free => free_chart(numbers),
+            Self::Edge { slope_limit_per_nm } => edge_chart(numbers, slope_limit_per_nm),
+        }
+    }
+
+    fn bounds(self) -> [[f64; 2]; 3] {
+        match self {
+            Self::Free => [[-FREE_BOUND, FREE_BOUND]; 3],
+            Self::Edge { .. } => {
+                [[-EDGE_BOUND, EDGE_BOUND], [-LEVEL_BOUND, LEVEL_BOUND], [-1.0, 1.0]]
+            }
+        }
+    }
+}
+
+/// Number of the concentration among the unknowns of every fluorescent problem.
+pub(crate) const CONCENTRATION: usize = 3;
+
+const FRACTION: [f64; 2] = [0.0, 1.0];
+
+/// Residuals of a color and their derivatives by unknowns that move it so.
+fn residuals_of<const N: usize>(
+    goal: &Goal,
+    color: [f64; 3],
+    derivatives: [[f64; 3]; N],
+) -> ([f64; 3], Jacobian<3, N>) {
+    let (residuals, by_color) = goal.residuals(Xyz(color));
+    let columns = derivatives.map(|d| by_color * d);
+    (residuals, [0, 1, 2].map(|i| columns.map(|column| column[i])))
+}
+
+/// Derivatives of the color by the shape's three numbers.
+fn by_shape<const K: usize>(
+    reflected: &Reflected<K>,
+    jacobian: [[f64; 3]; 3],
+) -> [[f64; 3]; 3] {
+    let by_parabola = Matrix3::from_columns(reflected.by_parabola);
+    [0, 1, 2].map(|v| by_parabola * [0, 1, 2].map(|m| jacobian[m][v]))
+}
+
+/// Reflectance alone; the unknowns are the shape's numbers.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PassiveProblem<'a> {
+    pub(crate) sums: &'a Sums,
+    pub(crate) goal: Goal,
+    pub(crate) shape: Shape,
+}
+
+impl Residuals<3, 3> for PassiveProblem<'_> {
+    fn eval(&self, x: &[f64; 3]) -> ([f64; 3], Jacobian<3, 3>) {
+        let (parabola, jacobian) = self.shape.chart(*x);
+        let reflected = self.sums.reflect(parabola, &CLEAR, []);
+        residuals_of(&self.goal, reflected.color, by_shape(&reflected, jacobian))
+    }
+
+    fn bounds(&self) -> [[f64; 2]; 3] {
+        self.shape.bounds()
+    }
+}
+
+/// Reflectance and a pair of dyes; the unknowns are the shape's numbers, concentration, weight.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct DyeProblem<'a> {
+    pub(crate) sums: &'a Sums,
+    pub(crate) goal: Goal,
+    pub(crate) shape: Shape,
+    pub(crate) model: &'a ModelOnGrid,
+    pub(crate) dyes: &'a DyeModel,
+    pub(crate) first: usize,
+    /// What the pair absorbs at concentration 1.
+    pub(crate) absorption: [&'a Lanes; 2],
+}
+
+impl Residuals<3, 5> for DyeProblem<'_> {
+    fn eval(&self, &[s0, s1, s2, c, w]: &[f64; 5]) -> ([f64; 3], Jacobian<3, 5>) {
+        let (parabola, jacobian) = self.shape.chart([s0, s1, s2]);
+        let [a, b] = self.absorption;
+        let absorbed = lanes_from(|i| c * ((1.0 - w) * a[i] + w * b[i]));
+        let reflected = self.sums.reflect(parabola, &absorbed, [a, b]);
+        let Emitted { color: emitted, derivatives: [emitted_by_w] } =
+            self.model.emitted_by_dyes(self.dyes, self.first, w);
+        let [by_s0, by_s1, by_s2] = by_shape(&reflected, jacobian);
+        let [seen_a, seen_b] = reflected.seen_by;
+        let color = [0, 1, 2].map(|k| reflected.color[k] + c * emitted[k]);
+        let by_c = [0, 1, 2].map(|k| emitted[k] - (1.0 - w) * seen_a[k] - w * seen_b[k]);
+        let by_w = [0, 1, 2].map(|k| c * (emitted_by_w[k] - seen_b[k] + seen_a[k]));
+        residuals_of(&self.goal, color, [by_s0, by_s1, by_s2, by_c, by_w])
+    }
+
+    fn bounds(&self) -> [[f64; 2]; 5] {
+        let [s0, s1, s2] = self.shape.bounds();
+        // A dye without a neighbor is its own: its weight means nothing.
+        let weight = if self.dyes.curves().len() == 1 { [0.0, 0.0] } else { FRACTION };
+        [s0, s1, s2, FRACTION, weight]
+    }
+}
+
+/// Reflectance and bells; the unknowns are the shape's numbers, concentration, and emission peak
+/// and Stokes shift in [`BELL_UNIT_NM`].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BellProblem<'a> {
+    pub(crate) sums: &'a Sums,
+    pub(crate) goal: Goal,
+    pub(crate) shape: Shape,
+    pub(crate) model: &'a ModelOnGrid,
+    pub(crate) bells: &'a AnalyticModel,
+}
+
+/// Unit of wavelengths among the unknowns, nm.
+pub(crate) const BELL_UNIT_NM: f64 = 100.0;
+
+impl Residuals<3, 6> for BellProblem<'_> {
+    fn eval(&self, &[s0, s1, s2, c, peak, shift]: &[f64; 6]) -> ([f64; 3], Jacobian<3, 6>) {
+        let (parabola, jacobian) = self.shape.chart([s0, s1, s2]);
+        let (peak_nm, shift_nm) = (peak * BELL_UNIT_NM, shift * BELL_UNIT_NM);
+        let [a, a_by_center] = self.sums.sample(|nm| self.bells.absorption(peak_nm - shift_nm, nm));
+        let absorbed = lanes_from(|i| c * a[i]);
+        let reflected = self.sums.reflect(parabola, &absorbed, [&a, &a_by_center]);
+        let Emitted { color: emitted, derivatives: [by_peak_nm, by_shift_nm] } =
+            self.model.emitted_by_bells(self.bells, peak_nm, shift_nm);
+        let [by_s0, by_s1, by_s2] = by_shape(&reflected, jacobian);
+        let [seen, seen_by_center] = reflected.seen_by;
+        let color = [0, 1, 2].map(|k| reflected.color[k] + c * emitted[k]);
+        let by_c = [0, 1, 2].map(|k| emitted[k] - seen[k]);
+        let unit = c * BELL_UNIT_NM;
+        let by_peak = [0, 1, 2].map(|k| unit * (by_peak_nm[k] - seen_by_center[k]));
+        let by_shift = [0, 1, 2].map(|k| unit * (by_shift_nm[k] + seen_by_center[k]));
+        residuals_of(&self.goal, color, [by_s0, by_s1, by_s2, by_c, by_peak, by_shift])
+    }
+
+    fn bounds(&self) -> [[f64; 2]; 6] {
+        let [s0, s1, s2] = self.shape.bounds();
+        let [peak, shift] = [AnalyticModel::EMISSION_PEAKS_NM, AnalyticModel::STOKES_SHIFTS_NM]
+            .map(|range| range.map(|nm| nm / BELL_UNIT_NM));
+        [s0, s1, s2, FRACTION, peak, shift]
+    }
+}
+
+/// The same color with less fluorescence: a fluorescent problem whose residuals carry multipliers,
+/// and whose concentration is a fourth one.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LeastProblem<'p, P> {
+    pub(crate) problem: &'p P,
+    pub(crate) multipliers: [f64; 3],
+    pub(crate) concentration_weight: f64,
+}
+
+impl<const N: usize, P: Residuals<3, N>> Residuals<4, N> for LeastProblem<'_, P> {
+    fn eval(&self, x: &[f64; N]) -> ([f64; 4], Jacobian<4, N>) {
+        let ([r0, r1, r2], [j0, j1, j2]) = self.problem.eval(x);
+        let [y0, y1, y2] = self.multipliers;
+        let mut by_x = [0.0; N];
+        by_x[CONCENTRATION] = self.concentration_weight;
+        let cost = self.concentration_weight * x[CONCENTRATION];
+        ([r0 + y0, r1 + y1, r2 + y2, cost], [j0, j1, j2, by_x])
+    }
+
+    fn bounds(&self) -> [[f64; 2]; N] {
+        self.problem.bounds()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solver::jacobian_error;
+    use upglow::{Accounting, DyeOptions, DyeSet, Mixing, Model};
+    use upglow_color::{Colorimetry, Contract, Grid, LinearRgb, Metric};
+
+    /// A central difference with the steps below errs by their squares and by rounding over them.
+    const TOLERANCE: f64 = 1e-6;
+    const STEP: f64 = 1e-5;
+    const SHAPES: [Shape; 2] = [Shape::Free, Shape::Edge { slope_limit_per_nm: 0.01 }];
+
+    fn goals(colorimetry: &Colorimetry) -> Vec<Goal> {
+        let target = colorimetry.xyz_from_rgb(LinearRgb([0.3, 0.6, 0.2]));
+        Metric::ALL.map(|metric| metric.goal(colorimetry, target)).to_vec()
+    }
+
+    #[test]
+    fn derivatives_of_a_reflectance_match_differences() {
+        let colorimetry = Contract::default().on(Grid::FIT);
+        let model = ModelOnGrid::new(&Model::Reflectance, &colorimetry);
+        let sums = Sums::new(&model);
+        for goal in goals(&colorimetry) {
+            for shape in SHAPES {
+                let problem = PassiveProblem { sums: &sums, goal, shape };
+                assert!(jacobian_error(&problem, &[0.2, -0.7, 0.5], &[STEP; 3]) < TOLERANCE);
+            }
+        }
+    }
+
+    #[test]
+    fn derivatives_with_dyes_match_differences() {
+        let colorimetry = Contract::default().on(Grid::FIT);
+        for accounting in [Accounting::Energy, Accounting::Photon] {
+            for mixing in [Mixing::Pooled, Mixing::Separate] {
+                let options = DyeOptions { accounting, mixing, ..DyeOptions::default() };
+                let dyes = DyeModel::new(DyeSet::named("seed8").unwrap(), options).unwrap();
+                let model = Model::Dyes(dyes.clone());
+                let model = ModelOnGrid::new(&model, &colorimetry);
+                let sums = Sums::new(&model);
+                let lanes = [2, 3].map(|dye| sums.lanes(model.dye_absorption(dye)));
+                for goal in goals(&colorimetry) {
+                    for shape in SHAPES {
+                        let absorption = lanes.each_ref();
+                        let model = &model;
+                        let dyes = &dyes;
+                        let sums = &sums;
+                        let problem =
+                            DyeProblem { sums, goal, shape, model, dyes, first: 2, absorption };
+                        let x = [0.2, -0.7, 0.5, 0.6, 0.3];
+                        assert!(jacobian_error(&problem, &x, &[STEP; 5]) < TOLERANCE);
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn derivatives_with_bells_match_differences() {
+        let colorimetry = Contract::default().on(Grid::FIT);
+        for accounting in [Accounting::Energy, Accounting::Photon] {
+            let bells = AnalyticModel::new(50.0, 45.0, accounting, 1.0).unwrap();
+            let model = Model::Analytic(bells);
+            let model = ModelOnGrid::new(&model, &colorimetry);
+            let sums = Sums::new(&model);
+            for goal in goals(&colorimetry) {
+                for shape in SHAPES {
+                    let problem =
+                        BellProblem { sums: &sums, goal, shape, model: &model, bells: &bells };
+                    let x = [0.2, -0.7, 0.5, 0.6, 5.432, 0.651];
+                    assert!(jacobian_error(&problem, &x, &[STEP; 6]) < TOLERANCE);
+                    let multipliers = [0.1, 0.2, 0.3];
+                    let least =
+                        LeastProblem { problem: &problem, multipliers, concentration_weight: 3.0 };
+                    assert!(jacobian_error(&least, &x, &[STEP; 6]) < TOLERANCE);
+                }
+            }
+        }
+    }
+}

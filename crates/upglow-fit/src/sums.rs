@@ -1,0 +1,152 @@
+//! The sums over wavelength behind every residual, with their derivatives.
+
+use upglow::ModelOnGrid;
+
+use crate::parabola::{Parabola, scaled};
+
+/// Samples of one curve at the wavelengths that the observer sees, padded to whole vectors.
+pub(crate) type Lanes = [f64; LANES];
+
+/// 360, 365 … 830 nm are 95 samples of the 5 nm grid.
+const LANES: usize = 96;
+/// How many sums run side by side; fixed, so that the order of additions is too.
+const WIDTH: usize = 4;
+
+/// Weights and wavelengths of the sums.
+#[derive(Clone, Debug)]
+pub(crate) struct Sums {
+    t: Lanes,
+    weights: [Lanes; 3],
+    wavelengths_nm: Lanes,
+    first: usize,
+}
+
+/// What a reflectance shows through an absorber, and derivatives.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Reflected<const K: usize> {
+    /// ∫ w·(1 − absorbed)·r.
+    pub(crate) color: [f64; 3],
+    /// Derivatives of the color by the parabola's coefficients, `[coefficient][X Y Z]`.
+    pub(crate) by_parabola: [[f64; 3]; 3],
+    /// ∫ w·other·r for each of the other curves.
+    pub(crate) seen_by: [[f64; 3]; K],
+}
+
+impl Sums {
+    /// The sums of a model's light and observer.
+    ///
+    /// # Panics
+    ///
+    /// If the model is not on a grid with at most 96 visible wavelengths; fits use 5 nm.
+    pub(crate) fn new(model: &ModelOnGrid) -> Self {
+        let weights = model.colorimetry().weights();
+        let seen = |w: &[f64; 3]| w.iter().any(|v| *v != 0.0);
+        let first = weights.iter().position(seen).unwrap_or(0);
+        let mut sums = Self {
+            t: [0.0; LANES],
+            weights: [[0.0; LANES]; 3],
+            wavelengths_nm: [0.0; LANES],
+            first,
+        };
+        assert!(weights.len() - first <= LANES, "fits run on the 5 nm grid");
+        for (i, (w, &nm)) in
+            weights.iter().zip(model.wavelengths_nm()).skip(first).enumerate()
+        {
+            sums.t[i] = scaled(nm);
+            sums.wavelengths_nm[i] = nm;
+            (0..3).for_each(|k| sums.weights[k][i] = w[k]);
+        }
+        sums
+    }
+
+    /// The part of a curve on the model's grid that the observer sees.
+    pub(crate) fn lanes(&self, curve: &[f64]) -> Lanes {
+        let mut lanes = [0.0; LANES];
+        lanes.iter_mut().zip(&curve[self.first..]).for_each(|(lane, v)| *lane = *v);
+        lanes
+    }
+
+    /// A function of wavelength, and its slope, at each lane.
+    pub(crate) fn sample(&self, f: impl Fn(f64) -> (f64, f64)) -> [Lanes; 2] {
+        let mut lanes = [[0.0; LANES]; 2];
+        for (i, &nm) in self.wavelengths_nm.iter().enumerate() {
+            (lanes[0][i], lanes[1][i]) = f(nm);
+        }
+        lanes
+    }
+
+    /// The reflectance at each lane.
+    pub(crate) fn reflectance(&self, [q0, q1, q2]: Parabola) -> Lanes {
+        self.t.map(|t| {
+            let x = q0 + t * (q1 + t * q2);
+            0.5 + 0.5 * x / (1.0 + x * x).sqrt()
+        })
+    }
+
+    /// ∫ w·curve.
+    pub(crate) fn integrate(&self, curve: impl Fn(usize) -> f64) -> [f64; 3] {
+        self.weights.each_ref().map(|w| (0..LANES).map(|i| w[i] * curve(i)).sum())
+    }
+
+    /// The color of a reflectance behind an absorber that takes `absorbed` at each wavelength, and
+    /// what each of `others` sees of the reflectance.
+    pub(crate) fn reflect<const K: usize>(
+        &self,
+        parabola: Parabola,
+        absorbed: &Lanes,
+        others: [&Lanes; K],
+    ) -> Reflected<K> {
+        let [q0, q1, q2] = parabola;
+        let mut color = [[0.0; WIDTH]; 3];
+        let mut by = [[[0.0; WIDTH]; 3]; 3];
+        let mut seen = [[[0.0; WIDTH]; 3]; K];
+        for start in (0..LANES).step_by(WIDTH) {
+            let mut r = [0.0; WIDTH];
+            let mut slope = [[0.0; WIDTH]; 3];
+            for l in 0..WIDTH {
+                let t = self.t[start + l];
+                let x = q0 + t * (q1 + t * q2);
+                let inverse = 1.0 / (1.0 + x * x).sqrt();
+                r[l] = 0.5 + 0.5 * x * inverse;
+                let through = 1.0 - absorbed[start + l];
+                let d = 0.5 * inverse * inverse * inverse * through;
+                slope[0][l] = d;
+                slope[1][l] = d * t;
+                slope[2][l] = d * t * t;
+            }
+            for k in 0..3 {
+                let w = &self.weights[k][start..start + WIDTH];
+                for l in 0..WIDTH {
+                    color[k][l] += w[l] * r[l] * (1.0 - absorbed[start + l]);
+                }
+                for m in 0..3 {
+                    for l in 0..WIDTH {
+                        by[m][k][l] += w[l] * slope[m][l];
+                    }
+                }
+                for (seen, other) in seen.iter_mut().zip(others) {
+                    for l in 0..WIDTH {
+                        seen[k][l] += w[l] * r[l] * other[start + l];
+                    }
+                }
+            }
+        }
+        Reflected {
+            color: color.map(total),
+            by_parabola: by.map(|by| by.map(total)),
+            seen_by: seen.map(|seen| seen.map(total)),
+        }
+    }
+}
+
+fn total(lanes: [f64; WIDTH]) -> f64 {
+    (lanes[0] + lanes[1]) + (lanes[2] + lanes[3])
+}
+
+/// Nothing absorbed anywhere.
+pub(crate) const CLEAR: Lanes = [0.0; LANES];
+
+/// `f` at each lane number.
+pub(crate) fn lanes_from(f: impl Fn(usize) -> f64) -> Lanes {
+    std::array::from_fn(f)
+}

@@ -1,0 +1,417 @@
+//! The spectra of a mixture at every nanometer, and its colors by sums over them.
+//!
+//! Written over whole arrays, apart from the run-time library that evaluates one wavelength at a
+//! time: the two are compared for some colors of every run.
+
+use upglow::{Accounting, DyeCurves, DyeModel, Fluorescence, Material, Mixing, Model, Sigmoid};
+use upglow_color::{Colorimetry, Contract, Grid, Xyz};
+
+/// Wavelengths of [`Grid::FINE`].
+const FINE: usize = Grid::FINE.len();
+
+/// One number for each wavelength of [`Grid::FINE`].
+pub(super) type Samples = [f64; FINE];
+
+/// A contract and a model, sampled once.
+pub(super) struct Sampler<'m> {
+    model: &'m Model,
+    /// Sums over 1 nm.
+    pub(super) fine: Sums,
+    /// Sums over 5 nm.
+    pub(super) fit: Sums,
+    pub(super) wavelengths_nm: Box<Samples>,
+    dyes: Vec<SampledDye>,
+}
+
+/// A colorimetry and which samples of [`Grid::FINE`] it adds up.
+pub(super) struct Sums {
+    pub(super) colorimetry: Colorimetry,
+    stride: usize,
+}
+
+struct SampledDye {
+    /// Absorptance at concentration 1.
+    absorption: Box<Samples>,
+    /// Color of one unit of emitted energy.
+    stimulus: Stimulus,
+    quantum_yield: f64,
+    mean_emission_nm: f64,
+}
+
+/// One color by each kind of sum.
+#[derive(Clone, Copy, Debug, Default)]
+struct Stimulus {
+    fine: [f64; 3],
+    fit: [f64; 3],
+}
+
+/// What a mixture does with light, at every wavelength, and the colors that it emits.
+pub(super) struct Spectra {
+    /// Reflectance r without what fluorescence absorbs: the mean of the parts' sigmoids.
+    pub(super) reflectance: Box<Samples>,
+    /// dr/dλ, 1/nm.
+    pub(super) slope_per_nm: Box<Samples>,
+    /// Share of light reflected at its own wavelength, (1 − c·a)·r.
+    pub(super) reflected: Box<Samples>,
+    /// Share of light given back at other wavelengths.
+    pub(super) returned: Box<Samples>,
+    emitted: Stimulus,
+    /// Of the part at hand: its sigmoid, what it absorbs in all, and in one lobe.
+    sigmoid: Box<Samples>,
+    absorbed: Box<Samples>,
+    lobe_absorbed: Box<Samples>,
+}
+
+/// Light that one absorber takes and one emitter gives back.
+struct Lobe {
+    absorber: Absorber,
+    strength: f64,
+    quantum_yield: f64,
+    accounting: Accounting,
+    mean_emission_nm: f64,
+    stimulus: Stimulus,
+}
+
+enum Absorber {
+    Dyes { first: usize, second: usize, weight: f64 },
+    Bell { center_nm: f64 },
+}
+
+fn zeros() -> Box<Samples> {
+    Box::new([0.0; FINE])
+}
+
+fn sampled(values: impl IntoIterator<Item = f64>) -> Box<Samples> {
+    let mut samples = zeros();
+    samples.iter_mut().zip(values).for_each(|(sample, value)| *sample = value);
+    samples
+}
+
+impl Sums {
+    fn new(contract: &Contract, grid: Grid) -> Self {
+        let stride = (grid.step_nm() / Grid::FINE.step_nm()) as usize;
+        Self { colorimetry: contract.on(grid), stride }
+    }
+
+    /// The color of light reflected in these shares.
+    fn reflected(&self, share: &Samples) -> [f64; 3] {
+        self.colorimetry.xyz_from_reflectance(share.iter().step_by(self.stride).copied()).0
+    }
+
+    /// Energy absorbed in these shares.
+    fn energy(&self, share: &Samples) -> f64 {
+        let light = self.colorimetry.irradiance();
+        share.iter().step_by(self.stride).zip(light).map(|(s, e)| s * e).sum()
+    }
+
+    /// The color of one unit of energy, spread as these samples are; `unit` is their sum.
+    fn emission(&self, samples: &[f64], unit: f64) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        let matching = self.colorimetry.matching();
+        for (e, m) in samples.iter().step_by(self.stride).zip(matching) {
+            (0..3).for_each(|k| sum[k] += e * m[k]);
+        }
+        sum.map(|v| v / unit)
+    }
+}
+
+impl SampledDye {
+    fn new(curves: &DyeCurves, fine: &Sums, fit: &Sums) -> Self {
+        let emission = curves.emission.values();
+        let by = |sums: &Sums| {
+            // The sum over a coarse grid is not quite the area: a dye gives back no more than that.
+            let area = emission.iter().step_by(sums.stride).sum();
+            sums.emission(emission, area)
+        };
+        Self {
+            absorption: sampled(curves.absorption.values().iter().copied()),
+            stimulus: Stimulus { fine: by(fine), fit: by(fit) },
+            quantum_yield: curves.quantum_yield,
+            mean_emission_nm: curves.mean_emission_nm,
+        }
+    }
+}
+
+impl<'m> Sampler<'m> {
+    pub(super) fn new(contract: &Contract, model: &'m Model) -> Self {
+        let (fine, fit) = (Sums::new(contract, Grid::FINE), Sums::new(contract, Grid::FIT));
+        let dyes = match model {
+            Model::Dyes(dyes) => {
+                dyes.curves().iter().map(|c| SampledDye::new(c, &fine, &fit)).collect()
+            }
+            _ => Vec::new(),
+        };
+        Self { model, fine, fit, wavelengths_nm: sampled(Grid::FINE.wavelengths_nm()), dyes }
+    }
+
+    /// Fills `spectra` with those of the mixture of `parts`.
+    pub(super) fn sample(
+        &self,
+        parts: impl Iterator<Item = (f64, Material)>,
+        spectra: &mut Spectra,
+    ) {
+        spectra.clear();
+        for (weight, material) in parts {
+            spectra.add_reflectance(weight, material.reflectance, &self.wavelengths_nm);
+            spectra.absorbed.fill(0.0);
+            for lobe in self.lobes(material.fluorescence).into_iter().flatten() {
+                self.add_lobe(weight, &lobe, spectra);
+            }
+            spectra.add_reflected(weight);
+        }
+    }
+
+    /// The color of sampled spectra by sums over 1 nm.
+    pub(super) fn fine_color(&self, spectra: &Spectra) -> Xyz {
+        color(&self.fine, spectra, spectra.emitted.fine)
+    }
+
+    /// The color of sampled spectra by sums over 5 nm.
+    pub(super) fn fit_color(&self, spectra: &Spectra) -> Xyz {
+        color(&self.fit, spectra, spectra.emitted.fit)
+    }
+
+    fn add_lobe(&self, weight: f64, lobe: &Lobe, spectra: &mut Spectra) {
+        self.fill_absorbed(lobe, &mut spectra.lobe_absorbed);
+        for i in 0..FINE {
+            let taken = spectra.lobe_absorbed[i];
+            spectra.absorbed[i] += taken;
+            let given = taken * lobe.quantum_yield * lobe.share(self.wavelengths_nm[i]);
+            spectra.lobe_absorbed[i] = given;
+            spectra.returned[i] += weight * given;
+        }
+        let energies =
+            [&self.fine, &self.fit].map(|sums| weight * sums.energy(&spectra.lobe_absorbed));
+        for k in 0..3 {
+            spectra.emitted.fine[k] += energies[0] * lobe.stimulus.fine[k];
+            spectra.emitted.fit[k] += energies[1] * lobe.stimulus.fit[k];
+        }
+    }
+
+    fn fill_absorbed(&self, lobe: &Lobe, absorbed: &mut Samples) {
+        match (&lobe.absorber, self.model) {
+            (&Absorber::Dyes { first, second, weight }, _) => {
+                let (a, b) = (&self.dyes[first].absorption, &self.dyes[second].absorption);
+                for i in 0..FINE {
+                    absorbed[i] = lobe.strength * ((1.0 - weight) * a[i] + weight * b[i]);
+                }
+            }
+            (&Absorber::Bell { center_nm }, Model::Analytic(model)) => {
+                for i in 0..FINE {
+                    let (share, _) = model.absorption(center_nm, self.wavelengths_nm[i]);
+                    absorbed[i] = lobe.strength * share;
+                }
+            }
+            (Absorber::Bell { .. }, _) => absorbed.fill(0.0),
+        }
+    }
+
+    /// The one or two lobes of a fluorescence; none where nothing fluoresces.
+    fn lobes(&self, fluorescence: Fluorescence) -> [Option<Lobe>; 2] {
+        match (fluorescence, self.model) {
+            (Fluorescence::Dyes { first, weight, concentration }, Model::Dyes(model)) => {
+                match model.options().mixing {
+                    Mixing::Pooled => {
+                        [Some(self.pooled_lobe(model, first, weight, concentration)), None]
+                    }
+                    Mixing::Separate => [
+                        Some(self.lone_lobe(model, first, concentration * (1.0 - weight))),
+                        Some(self.lone_lobe(model, model.partner(first), concentration * weight)),
+                    ],
+                }
+            }
+            (
+                Fluorescence::Analytic { emission_peak_nm, stokes_shift_nm, concentration },
+                Model::Analytic(_),
+            ) => [self.bell_lobe(emission_peak_nm, stokes_shift_nm, concentration), None],
+            _ => [None, None],
+        }
+    }
+
+    fn pooled_lobe(&self, model: &DyeModel, first: usize, weight: f64, strength: f64) -> Lobe {
+        let second = model.partner(first);
+        let (a, b) = (&self.dyes[first], &self.dyes[second]);
+        let mix = |x: f64, y: f64| (1.0 - weight) * x + weight * y;
+        let mix3 = |x: [f64; 3], y: [f64; 3]| [0, 1, 2].map(|k| mix(x[k], y[k]));
+        Lobe {
+            absorber: Absorber::Dyes { first, second, weight },
+            strength,
+            quantum_yield: mix(a.quantum_yield, b.quantum_yield),
+            accounting: model.options().accounting,
+            mean_emission_nm: mix(a.mean_emission_nm, b.mean_emission_nm),
+            stimulus: Stimulus {
+                fine: mix3(a.stimulus.fine, b.stimulus.fine),
+                fit: mix3(a.stimulus.fit, b.stimulus.fit),
+            },
+        }
+    }
+
+    fn lone_lobe(&self, model: &DyeModel, dye: usize, strength: f64) -> Lobe {
+        let sampled = &self.dyes[dye];
+        Lobe {
+            absorber: Absorber::Dyes { first: dye, second: dye, weight: 0.0 },
+            strength,
+            quantum_yield: sampled.quantum_yield,
+            accounting: model.options().accounting,
+            mean_emission_nm: sampled.mean_emission_nm,
+            stimulus: sampled.stimulus,
+        }
+    }
+
+    fn bell_lobe(&self, peak_nm: f64, stokes_shift_nm: f64, strength: f64) -> Option<Lobe> {
+        let Model::Analytic(model) = self.model else { return None };
+        let emission = self.wavelengths_nm.map(|nm| model.emission(peak_nm, nm).0);
+        let by = |sums: &Sums| sums.emission(&emission, 1.0 / sums.stride as f64);
+        Some(Lobe {
+            absorber: Absorber::Bell { center_nm: peak_nm - stokes_shift_nm },
+            strength,
+            quantum_yield: model.quantum_yield(),
+            accounting: model.accounting(),
+            mean_emission_nm: peak_nm,
+            stimulus: Stimulus { fine: by(&self.fine), fit: by(&self.fit) },
+        })
+    }
+}
+
+fn color(sums: &Sums, spectra: &Spectra, emitted: [f64; 3]) -> Xyz {
+    let reflected = sums.reflected(&spectra.reflected);
+    Xyz([0, 1, 2].map(|k| reflected[k] + emitted[k]))
+}
+
+impl Lobe {
+    /// The share of absorbed energy that may come out.
+    fn share(&self, lambda_nm: f64) -> f64 {
+        match self.accounting {
+            Accounting::Energy => 1.0,
+            Accounting::Photon => (lambda_nm / self.mean_emission_nm).min(1.0),
+        }
+    }
+}
+
+impl Spectra {
+    pub(super) fn new() -> Self {
+        Self {
+            reflectance: zeros(),
+            slope_per_nm: zeros(),
+            reflected: zeros(),
+            returned: zeros(),
+            emitted: Stimulus::default(),
+            sigmoid: zeros(),
+            absorbed: zeros(),
+            lobe_absorbed: zeros(),
+        }
+    }
+
+    fn clear(&mut self) {
+        self.reflectance.fill(0.0);
+        self.slope_per_nm.fill(0.0);
+        self.reflected.fill(0.0);
+        self.returned.fill(0.0);
+        self.emitted = Stimulus::default();
+    }
+
+    fn add_reflectance(&mut self, weight: f64, sigmoid: Sigmoid, wavelengths_nm: &Samples) {
+        let Sigmoid { c0, c1, c2 } = sigmoid;
+        let (sigmoids, sum) = (&mut *self.sigmoid, &mut *self.reflectance);
+        let slope = &mut *self.slope_per_nm;
+        for i in 0..FINE {
+            let nm = wavelengths_nm[i];
+            let x = (c0 * nm + c1) * nm + c2;
+            let flatness = 1.0 + x * x;
+            let root = flatness.sqrt();
+            let r = 0.5 + 0.5 * x / root;
+            sigmoids[i] = r;
+            sum[i] += weight * r;
+            slope[i] += weight * 0.5 * (2.0 * c0 * nm + c1) / (flatness * root);
+        }
+    }
+
+    fn add_reflected(&mut self, weight: f64) {
+        let (reflected, sigmoid) = (&mut *self.reflected, &*self.sigmoid);
+        let absorbed = &*self.absorbed;
+        for i in 0..FINE {
+            reflected[i] += weight * (1.0 - absorbed[i]) * sigmoid[i];
+        }
+    }
+
+    /// Share of light of each wavelength that comes back at any.
+    pub(super) fn albedo(&self) -> impl Iterator<Item = f64> + '_ {
+        self.reflected.iter().zip(self.returned.iter()).map(|(a, b)| a + b)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use upglow::{AnalyticModel, DyeOptions, DyeSet, Features, Mixture, ModelOnGrid, QuantumYield};
+
+    /// Rounding only: sums of 531 numbers of at most 1.
+    const ROUNDING: f64 = 1e-12;
+
+    fn models() -> Vec<Model> {
+        let mut models = vec![
+            Model::Reflectance,
+            Model::Analytic(AnalyticModel::new(50.0, 45.0, Accounting::Photon, 0.7).unwrap()),
+        ];
+        for accounting in [Accounting::Energy, Accounting::Photon] {
+            for mixing in [Mixing::Pooled, Mixing::Separate] {
+                let quantum_yield = QuantumYield::Measured;
+                let optical_density = Some(4.0);
+                let options = DyeOptions { accounting, mixing, quantum_yield, optical_density };
+                let set = DyeSet::named("seed8").unwrap();
+                models.push(Model::Dyes(DyeModel::new(set, options).unwrap()));
+            }
+        }
+        models
+    }
+
+    fn material(model: &Model) -> Material {
+        let shape = Features { shift_nm: 520.0, width_nm: 40.0, slope_per_nm: -0.009 };
+        let fluorescence = match model {
+            Model::Reflectance => Fluorescence::None,
+            Model::Dyes(_) => Fluorescence::Dyes { first: 7, weight: 0.3, concentration: 0.9 },
+            Model::Analytic(_) => Fluorescence::Analytic {
+                emission_peak_nm: 611.3,
+                stokes_shift_nm: 47.7,
+                concentration: 0.8,
+            },
+        };
+        Material { reflectance: shape.to_sigmoid().unwrap(), fluorescence }
+    }
+
+    #[test]
+    fn spectra_and_colors_are_those_of_the_run_time_library() {
+        let contract = Contract::default();
+        for model in models() {
+            let sampler = Sampler::new(&contract, &model);
+            let mixture = Mixture::of(&model, material(&model));
+            let mut spectra = Spectra::new();
+            sampler.sample(mixture.parts(), &mut spectra);
+            for (i, nm) in Grid::FINE.wavelengths_nm().enumerate() {
+                let albedo = spectra.reflected[i] + spectra.returned[i];
+                assert!((spectra.reflected[i] - mixture.reflectance(nm)).abs() < ROUNDING);
+                assert!((albedo - mixture.albedo(nm)).abs() < ROUNDING, "{nm} nm");
+            }
+            let colors = [sampler.fine_color(&spectra), sampler.fit_color(&spectra)];
+            for (color, sums) in colors.into_iter().zip([&sampler.fine, &sampler.fit]) {
+                let expected = mixture.color(&ModelOnGrid::new(&model, &sums.colorimetry));
+                for k in 0..3 {
+                    let error = (color.0[k] - expected.0[k]).abs();
+                    assert!(error < ROUNDING, "{} {error:e}", model.name());
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn slopes_are_those_of_the_sigmoid() {
+        let model = Model::Reflectance;
+        let sampler = Sampler::new(&Contract::default(), &model);
+        let sigmoid = material(&model).reflectance;
+        let mut spectra = Spectra::new();
+        sampler.sample([(1.0, Material::passive(sigmoid))].into_iter(), &mut spectra);
+        for (slope, nm) in spectra.slope_per_nm.iter().zip(Grid::FINE.wavelengths_nm()) {
+            assert!((slope - sigmoid.slope_per_nm(nm)).abs() < ROUNDING);
+        }
+    }
+}

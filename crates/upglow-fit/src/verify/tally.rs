@@ -1,0 +1,129 @@
+//! Counts and worst values, gathered in pieces and added up in order.
+
+use upglow::Cube;
+use upglow_color::LinearRgb;
+
+use super::{Offender, Place};
+
+/// One of the colors that are checked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Subject {
+    /// The node of this number.
+    Node(usize),
+    /// R = G = B between nodes.
+    Gray(LinearRgb),
+    /// A random color.
+    Point(LinearRgb),
+}
+
+impl Subject {
+    pub(super) fn rgb(self, cube: &Cube) -> LinearRgb {
+        match self {
+            Self::Node(index) => cube.node_rgb(index),
+            Self::Gray(rgb) | Self::Point(rgb) => rgb,
+        }
+    }
+
+    fn place(self, cube: &Cube) -> Place {
+        match self {
+            Self::Node(index) => {
+                Place::Node { node: cube.coordinates(index), rgb: cube.node_rgb(index) }
+            }
+            Self::Gray(rgb) | Self::Point(rgb) => Place::Point { rgb },
+        }
+    }
+}
+
+/// A value and where it was found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Finding {
+    pub(super) value: f64,
+    pub(super) subject: Subject,
+    pub(super) wavelength_nm: Option<f64>,
+}
+
+impl Finding {
+    pub(super) fn offender(self, cube: &Cube) -> Offender {
+        let Self { value: found, wavelength_nm, .. } = self;
+        Offender { place: self.subject.place(cube), wavelength_nm, found }
+    }
+}
+
+/// What one law found so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Tally {
+    pub(super) checked: usize,
+    pub(super) violations: usize,
+    pub(super) worst: Option<Finding>,
+}
+
+impl Tally {
+    /// Takes note of a value that must not exceed `most`. What is no number exceeds everything.
+    pub(super) fn see(&mut self, mut finding: Finding, most: f64) {
+        if finding.value.is_nan() {
+            finding.value = f64::INFINITY;
+        }
+        self.checked += 1;
+        self.violations += usize::from(finding.value > most);
+        self.keep_worst(finding);
+    }
+
+    /// Adds what a later piece found; of equally bad findings the first stays.
+    pub(super) fn add(&mut self, later: Self) {
+        self.checked += later.checked;
+        self.violations += later.violations;
+        if let Some(finding) = later.worst {
+            self.keep_worst(finding);
+        }
+    }
+
+    fn keep_worst(&mut self, finding: Finding) {
+        if self.worst.is_none_or(|worst| finding.value > worst.value) {
+            self.worst = Some(finding);
+        }
+    }
+}
+
+/// The greatest of some values and its number; what is no number counts as infinite.
+pub(super) fn greatest(values: impl Iterator<Item = f64>) -> (f64, usize) {
+    let mut best = (f64::NEG_INFINITY, 0);
+    for (i, value) in values.enumerate() {
+        let value = if value.is_nan() { f64::INFINITY } else { value };
+        if value > best.0 {
+            best = (value, i);
+        }
+    }
+    best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn finding(value: f64, node: usize) -> Finding {
+        Finding { value, subject: Subject::Node(node), wavelength_nm: None }
+    }
+
+    #[test]
+    fn pieces_add_up_and_the_first_of_equals_stays() {
+        let mut whole = Tally::default();
+        let mut parts = [Tally::default(); 2];
+        for (i, value) in [0.5, 2.0, 1.0, 2.0].into_iter().enumerate() {
+            whole.see(finding(value, i), 1.0);
+            parts[i / 2].see(finding(value, i), 1.0);
+        }
+        let mut sum = parts[0];
+        sum.add(parts[1]);
+        assert_eq!(sum, whole);
+        assert_eq!((whole.checked, whole.violations), (4, 2));
+        assert_eq!(whole.worst, Some(finding(2.0, 1)));
+    }
+
+    #[test]
+    fn what_is_no_number_breaks_every_law() {
+        let mut tally = Tally::default();
+        tally.see(finding(f64::NAN, 0), f64::MAX);
+        assert_eq!(tally.violations, 1);
+        assert_eq!(greatest([1.0, f64::NAN, 3.0].into_iter()), (f64::INFINITY, 1));
+    }
+}
