@@ -48,7 +48,7 @@ pub(crate) struct BuildArgs {
     /// numbers Rx,Ry,Gx,Gy,Bx,By,Wx,Wy
     #[arg(long, default_value = "acescg", help_heading = "What RGB means")]
     pub(crate) space: String,
-    /// Light: D65, D60, D55, D50, A, E, or a CSV file with the header wavelength_nm,power
+    /// Light: D65, D60, D55, D50, A, E, or a CSV file with the header `wavelength_nm,power`
     #[arg(long, default_value = "D65", value_name = "NAME|FILE", help_heading = "What RGB means")]
     pub(crate) illuminant: String,
     /// Chromatic adaptation from the white of the space to that of the light: bradford or none
@@ -59,7 +59,7 @@ pub(crate) struct BuildArgs {
     #[arg(long, default_value = "dyes", help_heading = "Model")]
     pub(crate) model: ModelName,
     /// Dyes: seed8, open8, wide14, or a folder of CSV files with the header
-    /// wavelength_nm,absorption,emission [default: seed8]
+    /// `wavelength_nm,absorption,emission` [default: seed8]
     #[arg(long, value_name = "NAME|FOLDER", help_heading = "Model")]
     pub(crate) dyes: Option<String>,
     /// What dyes conserve when they give light back: energy or photon [default: energy]
@@ -185,7 +185,9 @@ impl FromStr for ModelName {
         [Self::Dyes, Self::Analytic, Self::Reflectance]
             .into_iter()
             .find(|model| model.name() == name)
-            .ok_or_else(|| format!("unknown model {name:?}, expected dyes, analytic or reflectance"))
+            .ok_or_else(|| {
+                format!("unknown model {name:?}, expected dyes, analytic or reflectance")
+            })
     }
 }
 
@@ -244,7 +246,11 @@ const MOST_THREADS: usize = 1024;
 fn threads(text: &str) -> Result<NonZeroUsize, String> {
     let expected = format!("a whole number from 1 to {MOST_THREADS}");
     let found: NonZeroUsize = whole(text, &expected)?;
-    if found.get() <= MOST_THREADS { Ok(found) } else { Err(format!("{found}, expected {expected}")) }
+    if found.get() <= MOST_THREADS {
+        Ok(found)
+    } else {
+        Err(format!("{found}, expected {expected}"))
+    }
 }
 
 #[cfg(test)]

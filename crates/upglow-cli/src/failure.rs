@@ -79,9 +79,9 @@ pub(crate) fn io_message(error: &io::Error) -> String {
             let text = error.to_string();
             let end = text.find(" (os error").unwrap_or(text.len());
             let mut letters = text[..end].chars();
-            letters.next().map_or(text.clone(), |first| {
-                first.to_lowercase().chain(letters).collect()
-            })
+            letters
+                .next()
+                .map_or(text.clone(), |first| first.to_lowercase().chain(letters).collect())
         }
     }
 }
@@ -135,6 +135,8 @@ mod tests {
     #[test]
     fn a_line_names_its_place() {
         let failure = Failure::file(Path::new("a.cube"), "x, expected y");
-        assert!(matches!(failure, Failure::Input(line) if line.to_string() == "a.cube: x, expected y"));
+        assert!(
+            matches!(failure, Failure::Input(line) if line.to_string() == "a.cube: x, expected y")
+        );
     }
 }

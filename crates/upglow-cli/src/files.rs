@@ -40,7 +40,10 @@ pub(crate) fn check_output(path: &Path) -> Result<(), Failure> {
     let folder = folder_of(path);
     if !folder.is_dir() {
         let folder = folder.display();
-        return Err(Failure::file(path, format_args!("no folder {folder}, expected an existing one")));
+        return Err(Failure::file(
+            path,
+            format_args!("no folder {folder}, expected an existing one"),
+        ));
     }
     tempfile::Builder::new().prefix(".upglow-").tempfile_in(folder).map_err(|error| {
         let (found, folder) = (io_message(&error), folder.display());

@@ -30,13 +30,13 @@ impl Format {
                 .map_err(|error| Failure::input("standard output", error))?,
         };
         let mut stdout = io::stdout().lock();
-        stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()).map_err(|error| {
-            match error.kind() {
-                io::ErrorKind::BrokenPipe => Failure::OutputClosed,
-                _ => {
-                    let found = io_message(&error);
-                    Failure::input("standard output", format_args!("{found}, expected room"))
-                }
+        stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()).map_err(|error| match error
+            .kind()
+        {
+            io::ErrorKind::BrokenPipe => Failure::OutputClosed,
+            _ => {
+                let found = io_message(&error);
+                Failure::input("standard output", format_args!("{found}, expected room"))
             }
         })
     }

@@ -35,12 +35,10 @@ impl BuildPlan {
             adaptation: args.adapt,
         };
         let model = model(args)?;
-        let defaults = FitOptions::default();
         let options = FitOptions {
             metric: args.metric,
             slope_max_per_nm: args.slope_max_per_nm.0,
-            sweeps: args.sweeps.unwrap_or(defaults.sweeps),
-            ..defaults
+            sweeps: args.sweeps.unwrap_or(FitOptions::default().sweeps),
         };
         Fitter::new(&contract, &model, options)
             .map_err(|error| Failure::option("--slope-max-per-nm", error))?;
@@ -150,7 +148,9 @@ fn folder_failure(folder: &Path, error: DyeSetError) -> Failure {
         DyeSetError::Csv { path, source } => Failure::file(&path, source),
         DyeSetError::QuantumYield { path, dye, found } => Failure::file(
             &path,
-            format_args!("quantum yield {found:?} of {dye}, expected a number from 0 to 1 or nothing"),
+            format_args!(
+                "quantum yield {found:?} of {dye}, expected a number from 0 to 1 or nothing"
+            ),
         ),
         error => Failure::file(folder, error),
     }
@@ -248,9 +248,10 @@ fn component(channel: &str, text: &str, way: Way) -> Result<f64, Failure> {
             ),
         )),
         Ok(_) => Err(Failure::input(channel, format_args!("{text}, expected 0 to {most}"))),
-        Err(_) => {
-            Err(Failure::input(channel, format_args!("{text:?}, expected a number from 0 to {most}")))
-        }
+        Err(_) => Err(Failure::input(
+            channel,
+            format_args!("{text:?}, expected a number from 0 to {most}"),
+        )),
     }
 }
 

@@ -1,8 +1,6 @@
 //! Fits the material of one color.
 
-use upglow::{
-    AnalyticModel, DyeModel, Edge, Fluorescence, Material, Model, ModelOnGrid, Sigmoid,
-};
+use upglow::{AnalyticModel, DyeModel, Edge, Fluorescence, Material, Model, ModelOnGrid, Sigmoid};
 use upglow_color::{Contract, Goal, Grid, LinearRgb, Metric, Xyz};
 
 use crate::parabola::{edge_numbers, edge_of, scaled, sigmoid_of};
@@ -82,10 +80,7 @@ const MOST_HOPS: usize = 2;
 impl Fit {
     /// The material.
     pub fn material(&self) -> Material {
-        Material {
-            reflectance: self.reflectance.to_sigmoid(),
-            fluorescence: self.fluorescence,
-        }
+        Material { reflectance: self.reflectance.to_sigmoid(), fluorescence: self.fluorescence }
     }
 }
 
@@ -198,8 +193,7 @@ impl Job<'_> {
         let problem = PassiveProblem { sums: &fitter.sums, goal, shape: Shape::Free };
         let options = SolverOptions { step_limit: PASSIVE_STEPS, ..SolverOptions::default() };
         let free = solve(&problem, [0.0; 3], &options);
-        let steepness =
-            sigmoid_of(free.x).steepest_slope_per_nm() / fitter.slope_limit_per_nm;
+        let steepness = sigmoid_of(free.x).steepest_slope_per_nm() / fitter.slope_limit_per_nm;
         if steepness <= 1.0 {
             return Some(self.judge(sigmoid_of(free.x).to_edge(MIDDLE_NM), Fluorescence::None));
         }

@@ -44,6 +44,10 @@ impl FitOptions {
     pub(crate) fn slope_limit_per_nm(&self) -> Result<f64, FitOptionsError> {
         let [least, most] = SLOPE_RANGE_PER_NM;
         let found = self.slope_max_per_nm.unwrap_or(most);
-        if (least..=most).contains(&found) { Ok(found) } else { Err(FitOptionsError::Slope { found }) }
+        if (least..=most).contains(&found) {
+            Ok(found)
+        } else {
+            Err(FitOptionsError::Slope { found })
+        }
     }
 }

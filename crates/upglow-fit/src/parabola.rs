@@ -27,11 +27,7 @@ pub(crate) fn free_chart(coefficients: [f64; 3]) -> Chart {
 pub(crate) fn sigmoid_of([q0, q1, q2]: Parabola) -> Sigmoid {
     let c0 = q2 / (UNIT_NM * UNIT_NM);
     let b = q1 / UNIT_NM;
-    Sigmoid {
-        c0,
-        c1: b - 2.0 * c0 * CENTER_NM,
-        c2: q0 - CENTER_NM * (b - c0 * CENTER_NM),
-    }
+    Sigmoid { c0, c1: b - 2.0 * c0 * CENTER_NM, c2: q0 - CENTER_NM * (b - c0 * CENTER_NM) }
 }
 
 /// The parabola of [`Edge`] with edge = `numbers[0]` (in t), level = `numbers[1]` and slope =
@@ -58,22 +54,14 @@ pub(crate) fn edge_chart([e, p, relative]: [f64; 3], slope_limit_per_nm: f64) ->
 }
 
 /// The numbers of [`edge_chart`] for a reflectance: its steepest point nearer to `near_nm`.
-pub(crate) fn edge_numbers(
-    parabola: Parabola,
-    near_nm: f64,
-    slope_limit_per_nm: f64,
-) -> [f64; 3] {
+pub(crate) fn edge_numbers(parabola: Parabola, near_nm: f64, slope_limit_per_nm: f64) -> [f64; 3] {
     let edge = sigmoid_of(parabola).to_edge(near_nm);
     [scaled(edge.edge_nm), edge.level, edge.slope_per_nm / slope_limit_per_nm]
 }
 
 /// The reflectance that [`edge_chart`] describes.
 pub(crate) fn edge_of([e, p, relative]: [f64; 3], slope_limit_per_nm: f64) -> Edge {
-    Edge {
-        edge_nm: CENTER_NM + UNIT_NM * e,
-        level: p,
-        slope_per_nm: relative * slope_limit_per_nm,
-    }
+    Edge { edge_nm: CENTER_NM + UNIT_NM * e, level: p, slope_per_nm: relative * slope_limit_per_nm }
 }
 
 #[cfg(test)]
@@ -111,7 +99,10 @@ mod tests {
                 for m in 0..3 {
                     let quotient = (high[m] - low[m]) / (2.0 * STEP);
                     let scale = 1.0 + quotient.abs();
-                    assert!((jacobian[m][v] - quotient).abs() < 1e-7 * scale, "{numbers:?} {v} {m}");
+                    assert!(
+                        (jacobian[m][v] - quotient).abs() < 1e-7 * scale,
+                        "{numbers:?} {v} {m}"
+                    );
                 }
             }
         }

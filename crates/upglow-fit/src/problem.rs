@@ -62,10 +62,7 @@ fn residuals_of<const N: usize>(
 }
 
 /// Derivatives of the color by the shape's three numbers.
-fn by_shape<const K: usize>(
-    reflected: &Reflected<K>,
-    jacobian: [[f64; 3]; 3],
-) -> [[f64; 3]; 3] {
+fn by_shape<const K: usize>(reflected: &Reflected<K>, jacobian: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
     let by_parabola = Matrix3::from_columns(reflected.by_parabola);
     [0, 1, 2].map(|v| by_parabola * [0, 1, 2].map(|m| jacobian[m][v]))
 }

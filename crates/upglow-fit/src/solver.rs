@@ -21,7 +21,7 @@ pub struct SolverOptions {
     pub stationary_share: f64,
     /// Stop after this many evaluations. Default: 60.
     pub step_limit: usize,
-    /// First damping, as a share of the diagonal of JᵀJ. Default: 0.01.
+    /// First damping, as a share of the diagonal of `JᵀJ`. Default: 0.01.
     pub damping: f64,
 }
 
@@ -55,7 +55,7 @@ pub struct Summary<const N: usize> {
     pub stop: Stop,
 }
 
-/// Damping never falls below this share, so that a singular JᵀJ stays solvable.
+/// Damping never falls below this share, so that a singular `JᵀJ` stays solvable.
 const LEAST_DAMPING: f64 = 1e-9;
 /// Added to the diagonal where an unknown has no effect at all.
 const NO_EFFECT: f64 = 1e-12;
@@ -177,7 +177,7 @@ impl<const M: usize, const N: usize> Point<M, N> {
         }
     }
 
-    /// Solves (JᵀJ + damping·diag)·step = −Jᵀr for the moving unknowns, where r already holds
+    /// Solves `(JᵀJ + damping·diag)·step = −Jᵀr` for the moving unknowns, where r already holds
     /// what the others have moved; `None` if nothing moves.
     fn damped_step(&self, moving: [bool; N], next: &[f64; N], damping: f64) -> Option<[f64; N]> {
         if !moving.contains(&true) {
@@ -207,8 +207,7 @@ impl<const M: usize, const N: usize> Point<M, N> {
     fn predicted_cost(&self, next: &[f64; N]) -> f64 {
         (0..M)
             .map(|i| {
-                let moved: f64 =
-                    (0..N).map(|v| self.jacobian[i][v] * (next[v] - self.x[v])).sum();
+                let moved: f64 = (0..N).map(|v| self.jacobian[i][v] * (next[v] - self.x[v])).sum();
                 (self.residuals[i] + moved).powi(2)
             })
             .sum()

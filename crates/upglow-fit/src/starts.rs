@@ -14,7 +14,8 @@ pub(crate) struct Start {
     pub(crate) fluorescence: Fluorescence,
 }
 
-/// The start materials and their colors, sorted into buckets of like fluorescence.
+/// The start materials and their colors, sorted into buckets of like fluorescence, or of like shape
+/// where nothing fluoresces.
 #[derive(Clone, Debug)]
 pub(crate) struct StartTable {
     shapes: Vec<[f64; 3]>,
@@ -42,6 +43,8 @@ const WEIGHTS: [f64; 3] = [0.0, 0.5, 1.0];
 /// Concentrations for dyes of a thin solution, and for dense pigments, which are wide.
 const CONCENTRATIONS: &[f64] = &[0.45, 1.0];
 const DENSE_CONCENTRATIONS: &[f64] = &[0.2, 0.5, 1.0];
+/// Into how many buckets of like shape the starts without fluorescence go.
+const PASSIVE_BUCKETS: usize = 24;
 /// Emission peaks and Stokes shifts of bells, nm.
 const PEAKS_NM: [f64; 11] =
     [400.0, 431.0, 462.0, 493.0, 524.0, 555.0, 586.0, 617.0, 648.0, 679.0, 710.0];
@@ -65,6 +68,7 @@ impl StartTable {
         let (variants, absorbers) = variants(model, sums);
         let white = model.colorimetry().white();
         let mut sorted: Vec<(usize, Entry)> = Vec::new();
+        let per_kind = shapes.len().div_ceil(PASSIVE_BUCKETS);
         for (index, &shape) in (0..).zip(&shapes) {
             let (parabola, _) = edge_chart(shape, slope_limit_per_nm);
             let r = sums.reflectance(parabola);
@@ -76,7 +80,11 @@ impl StartTable {
                 let Lab { l, a, b } = lab_from_xyz(Xyz(color), white);
                 let lab = [l, a, b].map(to_single);
                 let fluorescence = variant.fluorescence;
-                sorted.push((variant.bucket, Entry { lab, shape: index, fluorescence }));
+                let bucket = match fluorescence {
+                    Fluorescence::None => index as usize / per_kind,
+                    _ => variant.bucket,
+                };
+                sorted.push((bucket, Entry { lab, shape: index, fluorescence }));
             }
         }
         sorted.sort_by_key(|(bucket, _)| *bucket);
@@ -213,11 +221,7 @@ fn passive() -> Variant {
     Variant { bucket: 0, fluorescence, absorbers: [(0, 0.0); 2], emitted: [0.0; 3] }
 }
 
-fn dye_variants(
-    model: &ModelOnGrid,
-    dyes: &DyeModel,
-    sums: &Sums,
-) -> (Vec<Variant>, Vec<Lanes>) {
+fn dye_variants(model: &ModelOnGrid, dyes: &DyeModel, sums: &Sums) -> (Vec<Variant>, Vec<Lanes>) {
     let lanes = (0..dyes.curves().len()).map(|dye| sums.lanes(model.dye_absorption(dye))).collect();
     let dense = dyes.options().optical_density.is_some();
     let concentrations = if dense { DENSE_CONCENTRATIONS } else { CONCENTRATIONS };

@@ -49,9 +49,7 @@ impl Sums {
             first,
         };
         assert!(weights.len() - first <= LANES, "fits run on the 5 nm grid");
-        for (i, (w, &nm)) in
-            weights.iter().zip(model.wavelengths_nm()).skip(first).enumerate()
-        {
+        for (i, (w, &nm)) in weights.iter().zip(model.wavelengths_nm()).skip(first).enumerate() {
             sums.t[i] = scaled(nm);
             sums.wavelengths_nm[i] = nm;
             (0..3).for_each(|k| sums.weights[k][i] = w[k]);

@@ -201,3 +201,191 @@ fn curve_fault(curves: &DyeCurves) -> f64 {
     let area = (curves.emission.integral() - 1.0).abs();
     absorption.chain(emission).fold(area, f64::max)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Unwatched;
+    use upglow::{
+        Accounting, AnalyticModel, DyeModel, DyeOptions, DyeSet, Edge, FitRecord, Fluorescence,
+        Mixing, ModelOnGrid, Node, QuantumYield, Sigmoid,
+    };
+    use upglow_color::{Adaptation, Contract, Grid, LinearRgb, Metric};
+
+    const RESOLUTION: usize = 4;
+    const OPTIONS: VerifyOptions =
+        VerifyOptions { points: 3000, interpolation: Interpolation::Blend, seed: 5 };
+    /// Number of node `[1][0][2]`, which is not gray, and of the gray `[1][1][1]` and the white.
+    const COLORED: usize = 18;
+    const GRAY: usize = 21;
+    const WHITE: usize = 63;
+
+    fn dyes() -> Model {
+        let options = DyeOptions {
+            accounting: Accounting::Photon,
+            mixing: Mixing::Separate,
+            quantum_yield: QuantumYield::Measured,
+            optical_density: Some(2.0),
+        };
+        Model::Dyes(DyeModel::new(DyeSet::named("seed8").unwrap(), options).unwrap())
+    }
+
+    /// A flat reflectance of the mean for grays, an edge and a little fluorescence for the rest.
+    fn material(LinearRgb([r, g, b]): LinearRgb, model: &Model) -> (Edge, Fluorescence) {
+        let flat = Sigmoid::flat((r + g + b) / 3.0).to_edge(550.0);
+        if r == g && g == b {
+            return (flat, Fluorescence::None);
+        }
+        let level = flat.level.clamp(-2.0, 2.0);
+        let edge = Edge { edge_nm: 450.0 + 200.0 * r, level, slope_per_nm: 0.0099 * (r - b) };
+        let fluorescence = match model {
+            Model::Reflectance => Fluorescence::None,
+            Model::Dyes(_) => {
+                Fluorescence::Dyes { first: (7.0 * r) as usize, weight: g, concentration: b }
+            }
+            Model::Analytic(_) => Fluorescence::Analytic {
+                emission_peak_nm: 450.0 + 200.0 * g,
+                stokes_shift_nm: 60.0,
+                concentration: r,
+            },
+        };
+        (edge, fluorescence)
+    }
+
+    /// A cube of such materials, with the nodes that `change` makes of them.
+    fn cube(contract: Contract, model: Model, change: impl Fn(usize, &mut Node)) -> Cube {
+        let colorimetry = contract.on(Grid::FIT);
+        let sums = ModelOnGrid::new(&model, &colorimetry);
+        let fit = FitRecord { metric: "de2000".into(), slope_max_per_nm: Some(0.01), sweeps: 0 };
+        let empty = vec![Node::default(); RESOLUTION.pow(3)];
+        let frame = Cube::new(contract.clone(), model.clone(), fit.clone(), RESOLUTION, empty);
+        let frame = frame.unwrap();
+        let node = |index: usize| {
+            let rgb = frame.node_rgb(index);
+            let (edge, fluorescence) = material(rgb, &model);
+            let mut node = Node::new(edge, fluorescence, 0.0);
+            change(index, &mut node);
+            let (target, color) =
+                (colorimetry.xyz_from_rgb(rgb), sums.color(node.material(&model)));
+            let de2000 = Metric::De2000.distance(&colorimetry, target, color) as f32;
+            // Not a number where the change made it so, which no cube stores.
+            node.de2000 += de2000.max(0.0);
+            node
+        };
+        let nodes = (0..RESOLUTION.pow(3)).map(node).collect();
+        Cube::new(contract, model, fit, RESOLUTION, nodes).unwrap()
+    }
+
+    fn report(cube: &Cube) -> VerifyReport {
+        verify(cube, &OPTIONS, &Unwatched).unwrap()
+    }
+
+    /// The names of the laws that are broken in a cube with one changed node, and where.
+    fn broken(index: usize, change: impl Fn(&mut Node)) -> Vec<(&'static str, Place)> {
+        let cube = cube(Contract::default(), dyes(), |i, node| {
+            if i == index {
+                change(node);
+            }
+        });
+        let report = report(&cube);
+        assert!(!report.holds());
+        let broken = report.broken().filter(|check| check.verdict == Verdict::Broken);
+        broken.map(|check| (check.name, check.worst.clone().unwrap().place)).collect()
+    }
+
+    #[test]
+    fn a_valid_cube_of_each_model_keeps_every_law() {
+        for model in [Model::Reflectance, Model::Analytic(AnalyticModel::default()), dyes()] {
+            let cube = cube(Contract::default(), model, |_, _| {});
+            let report = report(&cube);
+            assert!(report.holds(), "{:#?}", report.broken().collect::<Vec<_>>());
+            let energy = report.check("energy").unwrap();
+            assert_eq!((energy.checked, energy.verdict), (64 + 1001 + 3000, Verdict::Holds));
+            assert_eq!(report.check("white-black").unwrap().checked, 2);
+        }
+    }
+
+    #[test]
+    fn a_slope_above_the_limit_is_caught_and_named() {
+        let found = broken(COLORED, |node| node.reflectance[2] = 0.010_001);
+        let node = Place::Node { node: [1, 0, 2], rgb: LinearRgb([2.0 / 3.0, 0.0, 1.0 / 3.0]) };
+        assert_eq!(found, [("slope", node)]);
+    }
+
+    #[test]
+    fn a_tinted_gray_is_caught() {
+        let names: Vec<_> = broken(GRAY, |node| node.reflectance[2] = 1e-5).into_iter().collect();
+        let names: Vec<_> = names.iter().map(|(name, _)| *name).collect();
+        assert_eq!(names, ["gray-flat", "gray-value"]);
+    }
+
+    #[test]
+    fn a_fluorescent_gray_is_caught() {
+        let found = broken(GRAY, |node| node.fluorescence = [0.5, 0.1, 0.0]);
+        assert_eq!(found[0].0, "gray-passive");
+    }
+
+    #[test]
+    fn a_white_that_is_not_quite_white_is_caught() {
+        let found = broken(WHITE, |node| node.reflectance[1] = 1000.0);
+        let white = Place::Node { node: [3; 3], rgb: LinearRgb([1.0; 3]) };
+        assert_eq!(found, [("white-black", white)]);
+    }
+
+    #[test]
+    fn a_wrong_stored_difference_is_caught() {
+        let found = broken(COLORED, |node| node.de2000 = 0.01);
+        assert_eq!(found.len(), 1);
+        assert_eq!(found[0].0, "stored-difference");
+    }
+
+    #[test]
+    fn nodes_that_only_claim_to_be_exact_are_caught_between_them_too() {
+        let honest = cube(Contract::default(), dyes(), |_, _| {});
+        let nodes = honest.nodes().iter().map(|node| Node { de2000: 0.0, ..*node }).collect();
+        let (contract, fit) = (honest.contract().clone(), honest.fit().clone());
+        let liar = Cube::new(contract, dyes(), fit, RESOLUTION, nodes).unwrap();
+        let report = report(&liar);
+        assert_eq!(report.check("exact").unwrap().verdict, Verdict::Broken);
+        assert_eq!(report.check("points-between-exact").unwrap().value, 1.0);
+    }
+
+    #[test]
+    fn numbers_without_bound_break_laws_but_nothing_else() {
+        let found = broken(COLORED, |node| node.reflectance = [3e38, 3e38, 3e38]);
+        let names: Vec<_> = found.iter().map(|(name, _)| *name).collect();
+        assert_eq!(names[..3], ["energy", "bounds", "slope"]);
+    }
+
+    #[test]
+    fn without_adaptation_grays_have_no_law() {
+        let contract = Contract { adaptation: Adaptation::None, ..Contract::default() };
+        let report = report(&cube(contract, dyes(), |_, _| {}));
+        for name in ["gray-flat", "gray-passive", "gray-value", "white-black"] {
+            assert_eq!(report.check(name).unwrap().verdict, Verdict::NotApplicable);
+        }
+    }
+
+    #[test]
+    fn the_report_does_not_depend_on_the_number_of_threads() {
+        let cube = cube(Contract::default(), dyes(), |_, _| {});
+        let with = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| report(&cube))
+        };
+        assert_eq!(with(1), with(3));
+    }
+
+    #[test]
+    fn a_watcher_stops_the_work() {
+        struct Impatient;
+        impl Watch for Impatient {
+            fn progress(&self, _: Progress) {}
+            fn stopped(&self) -> bool {
+                true
+            }
+        }
+        let cube = cube(Contract::default(), Model::Reflectance, |_, _| {});
+        assert_eq!(verify(&cube, &OPTIONS, &Impatient), Err(Stopped));
+    }
+}

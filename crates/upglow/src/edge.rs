@@ -132,6 +132,7 @@ mod tests {
         }
 
         #[test]
+        #[expect(clippy::cast_possible_truncation, reason = "rounding is what is tested")]
         fn single_precision_is_enough(edge in any_edge(), nm in 300.0..830.0) {
             let single = |v: f64| f64::from(v as f32);
             let stored = Edge {

@@ -143,7 +143,7 @@ mod tests {
         let fluorescence = match model {
             Model::Reflectance => Fluorescence::None,
             Model::Dyes(_) => Fluorescence::Dyes {
-                first: (7.999 * u[3]) as usize,
+                first: (0..8).rev().find(|&i| i as f64 <= 8.0 * u[3]).unwrap_or(0),
                 weight: u[4],
                 concentration: u[5],
             },

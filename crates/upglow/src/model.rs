@@ -117,7 +117,7 @@ pub enum ModelError {
 
 /// A ring of dyes, ready to be mixed two by two.
 ///
-/// Absorption per incident light: c·a(λ) with a = (1 − w)·a_i + w·a_j for dye i and its neighbor j.
+/// Absorption per incident light: c·a(λ) with a = (1 − w)·aᵢ + w·aⱼ for dye i and its neighbor j.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DyeModel {
     set: DyeSet,

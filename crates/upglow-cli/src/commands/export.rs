@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use serde::Serialize;
-use upglow::{Cube, Model, Node};
+use upglow::{Cube, Model, Node, Vertex};
 
 use crate::args::ExportArgs;
 use crate::failure::Failure;
@@ -46,11 +46,10 @@ fn csv(cube: &Cube) -> String {
     text
 }
 
-/// c0, c1, c2, shift, width, slope; the last three empty for a flat reflectance.
+/// c0, c1, c2, shift, width, slope; the last three empty for a flat or straight reflectance.
 fn shape_cells(node: &Node) -> String {
-    let vertex = node.vertex();
-    let sigmoid = vertex.to_sigmoid();
-    let features = vertex.to_features().map_or_else(
+    let sigmoid = node.edge().to_sigmoid();
+    let features = sigmoid.to_vertex().and_then(Vertex::to_features).map_or_else(
         || ",,".to_owned(),
         |f| format!("{},{},{}", f.shift_nm, f.width_nm, f.slope_per_nm),
     );
@@ -114,7 +113,7 @@ mod tests {
         let set = DyeSet::named("seed8").unwrap();
         let model = Model::Dyes(DyeModel::new(set, DyeOptions::default()).unwrap());
         let node = Node {
-            reflectance: [1e-4, 500.0, -0.5],
+            reflectance: [500.0, -0.5, 0.01],
             dye: 7,
             fluorescence: [0.1, 0.7, 0.0],
             de2000: 0.3,

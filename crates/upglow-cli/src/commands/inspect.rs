@@ -70,11 +70,8 @@ struct FitReport {
 
 pub(crate) fn run(args: &InspectArgs, format: Format) -> Result<(), Failure> {
     let cube = files::read_cube(&args.file)?;
-    let bytes = args
-        .file
-        .metadata()
-        .map_err(|error| Failure::file(&args.file, io_message(&error)))?
-        .len();
+    let bytes =
+        args.file.metadata().map_err(|error| Failure::file(&args.file, io_message(&error)))?.len();
     format.print(&InspectReport::new(args.file.display().to_string(), bytes, &cube))
 }
 

@@ -46,11 +46,8 @@ struct OffenderReport {
 
 pub(crate) fn run(args: &VerifyArgs, format: Format, quiet: bool) -> Result<(), Failure> {
     let cube = files::read_cube(&args.file)?;
-    let options = VerifyOptions {
-        points: args.points,
-        interpolation: args.interpolation,
-        seed: args.seed,
-    };
+    let options =
+        VerifyOptions { points: args.points, interpolation: args.interpolation, seed: args.seed };
     let bar = Bar::start(quiet);
     let found = on_threads(args.threads, || verify(&cube, &options, &bar))?;
     bar.finish();

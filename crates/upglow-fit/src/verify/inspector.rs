@@ -10,9 +10,12 @@ use super::subjects::Subjects;
 use super::tally::{Finding, Subject, Tally, greatest};
 use crate::CubeSummary;
 
-/// Random colors for which the run-time library is asked for every pair of wavelengths. Each
-/// takes 30 ms; fewer would miss the rarer dyes.
-const LIBRARY_POINTS: usize = 16;
+/// Random colors that are compared with the run-time library. Fewer would miss the rarer dyes;
+/// each takes a millisecond.
+const LIBRARY_POINTS: usize = 64;
+
+/// Random colors for which the library is asked for every pair of wavelengths: 30 ms each.
+const PAIR_POINTS: usize = 4;
 
 /// What a piece of the work found.
 #[derive(Clone, Debug, Default)]
@@ -99,6 +102,9 @@ impl<'c> Inspector<'c> {
             self.see_color(subject, spectra, &mut findings);
             if self.subjects.is_among_first_points(index, LIBRARY_POINTS) {
                 self.see_library(subject, &mixture, spectra, &mut findings);
+            }
+            if self.subjects.is_among_first_points(index, PAIR_POINTS) {
+                self.see_pairs(subject, &mixture, spectra, &mut findings);
             }
         }
         findings
@@ -232,13 +238,21 @@ impl<'c> Inspector<'c> {
             },
         ));
         self.see(Law::Library, subject, error, self.nm(at), findings);
-        let fine = (self.sampler.fine_color(spectra), self.color_by_pairs(mixture));
         let sums = ModelOnGrid::new(self.cube.model(), &self.sampler.fit.colorimetry);
-        let fit = (self.sampler.fit_color(spectra), mixture.color(&sums));
-        for (ours, library) in [fine, fit] {
-            let (error, _) = greatest((0..3).map(|k| (ours.0[k] - library.0[k]).abs()));
-            self.see(Law::Library, subject, error, None, findings);
-        }
+        let colors = (self.sampler.fit_color(spectra), mixture.color(&sums));
+        self.see(Law::Library, subject, difference(colors), None, findings);
+    }
+
+    /// The same for the color, by the library's re-radiation between all pairs of wavelengths.
+    fn see_pairs(
+        &self,
+        subject: Subject,
+        mixture: &Mixture<'_>,
+        spectra: &Spectra,
+        findings: &mut Findings,
+    ) {
+        let colors = (self.sampler.fine_color(spectra), self.color_by_pairs(mixture));
+        self.see(Law::Library, subject, difference(colors), None, findings);
     }
 
     /// The color by sums over every incident and every outgoing nanometer.
@@ -261,4 +275,9 @@ impl<'c> Inspector<'c> {
     fn nm(&self, index: usize) -> Option<f64> {
         Some(self.sampler.wavelengths_nm[index])
     }
+}
+
+/// The greatest difference of tristimulus values.
+fn difference((a, b): (Xyz, Xyz)) -> f64 {
+    greatest((0..3).map(|k| (a.0[k] - b.0[k]).abs())).0
 }

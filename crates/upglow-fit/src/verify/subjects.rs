@@ -66,7 +66,7 @@ fn random_rgb(seed: u64, index: usize) -> LinearRgb {
     LinearRgb([1, 2, 3].map(|k| unit(split_mix(seed, first + k))))
 }
 
-/// Number `step` of the SplitMix64 sequence of a seed: any of them without those before it.
+/// Number `step` of the `SplitMix64` sequence of a seed: any of them without those before it.
 ///
 /// # Source
 ///

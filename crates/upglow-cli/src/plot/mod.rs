@@ -1,0 +1,150 @@
+//! Pictures of a material's curves.
+
+pub(crate) mod svg;
+pub(crate) mod terminal;
+
+use upglow::{Material, Mixture, Model, Sigmoid};
+use upglow_color::{Colorimetry, Grid, LinearRgb};
+
+/// First wavelength of every picture, nm.
+const FIRST_NM: f64 = 300.0;
+/// Last wavelength of every picture, nm.
+const LAST_NM: f64 = 780.0;
+
+/// The curves of a material on [`Grid::FINE`].
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Curves {
+    pub(crate) wavelengths_nm: Vec<f64>,
+    /// Share of light reflected at its own wavelength, (1 − c·a)·r, 0..=1.
+    pub(crate) reflectance: Vec<f64>,
+    /// Share of light absorbed by what fluoresces, c·a, 0..=1.
+    pub(crate) absorption: Vec<f64>,
+    /// What comes out by fluorescence under a light, 1 at its peak; zeros where nothing does.
+    pub(crate) emission: Vec<f64>,
+}
+
+impl Curves {
+    pub(crate) fn of(mixture: &Mixture<'_>, colorimetry: &Colorimetry) -> Self {
+        let fine = || Grid::FINE.wavelengths_nm();
+        Self {
+            wavelengths_nm: fine().collect(),
+            reflectance: fine().map(|nm| mixture.reflectance(nm)).collect(),
+            absorption: fine().map(|nm| absorption(mixture, nm)).collect(),
+            emission: emission(mixture, colorimetry),
+        }
+    }
+
+    pub(crate) fn is_fluorescent(&self) -> bool {
+        self.emission.iter().any(|&value| value > 0.0)
+    }
+
+    /// The points of a curve that a picture shows.
+    fn shown<'c>(&'c self, curve: &'c [f64]) -> impl Iterator<Item = (f64, f64)> + 'c {
+        let range = FIRST_NM..=LAST_NM;
+        let points = self.wavelengths_nm.iter().copied().zip(curve.iter().copied());
+        points.filter(move |(nm, _)| range.contains(nm))
+    }
+}
+
+/// c·a at one wavelength: what the material would lack if it were white.
+fn absorption(mixture: &Mixture<'_>, nm: f64) -> f64 {
+    let of_part = |model: &Model, part: Material| {
+        let white = Material { reflectance: Sigmoid::flat(1.0), ..part };
+        1.0 - Mixture::of(model, white).reflectance(nm)
+    };
+    let glowing = mixture.parts().filter(|(_, part)| part.fluorescence.concentration() > 0.0);
+    glowing.map(|(weight, part)| weight * of_part(mixture.model(), part)).sum()
+}
+
+/// The light that comes out by fluorescence, relative to its peak.
+fn emission(mixture: &Mixture<'_>, colorimetry: &Colorimetry) -> Vec<f64> {
+    let incident = || colorimetry.grid().wavelengths_nm().zip(colorimetry.irradiance());
+    let at = |out_nm: f64| -> f64 {
+        incident().map(|(in_nm, power)| power * mixture.reradiation_per_nm(in_nm, out_nm)).sum()
+    };
+    let emitted: Vec<f64> = if mixture.is_fluorescent() {
+        Grid::FINE.wavelengths_nm().map(at).collect()
+    } else {
+        vec![0.0; Grid::FINE.len()]
+    };
+    let peak = emitted.iter().copied().fold(0.0, f64::max);
+    if peak > 0.0 { emitted.iter().map(|value| value / peak).collect() } else { emitted }
+}
+
+/// What a figure shows.
+#[derive(Clone, Debug)]
+pub(crate) struct Figure<'a> {
+    pub(crate) curves: &'a Curves,
+    /// The color asked for.
+    pub(crate) target: Swatch,
+    /// The color of the material.
+    pub(crate) result: Swatch,
+    pub(crate) caption: Vec<String>,
+}
+
+/// A color on a screen.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Swatch {
+    /// `#rrggbb`.
+    pub(crate) hex: String,
+    /// Whether sRGB does not hold the color.
+    pub(crate) clipped: bool,
+}
+
+/// A component this far outside 0..=1 is a color outside sRGB, not rounding.
+const OUTSIDE: f64 = 1e-3;
+
+impl Swatch {
+    /// The nearest color that sRGB holds, component by component, from linear sRGB.
+    pub(crate) fn from_linear(rgb: LinearRgb) -> Self {
+        let level = |v: f64| format!("{:02x}", eight_bits(encoded(v.clamp(0.0, 1.0))));
+        let inside = |v: &f64| (-OUTSIDE..=1.0 + OUTSIDE).contains(v);
+        Self { hex: format!("#{}", rgb.0.map(level).concat()), clipped: !rgb.0.iter().all(inside) }
+    }
+}
+
+/// The transfer curve of IEC 61966-2-1.
+fn encoded(linear: f64) -> f64 {
+    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "the value is in 0..=1 and rounding is meant"
+)]
+fn eight_bits(value: f64) -> u8 {
+    (255.0 * value).round() as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use upglow::{DyeModel, DyeOptions, DyeSet, Fluorescence};
+    use upglow_color::Contract;
+
+    #[test]
+    fn screen_colors_have_their_published_values() {
+        // Middle gray of 18 % is 118 in sRGB.
+        assert_eq!(Swatch::from_linear(LinearRgb([0.18, 0.0, 1.0])).hex, "#7600ff");
+        assert!(Swatch::from_linear(LinearRgb([1.2, 0.0, 1.0])).clipped);
+    }
+
+    #[test]
+    fn absorption_and_reflectance_of_a_white_material_add_up_to_one() {
+        let dyes = DyeModel::new(DyeSet::named("seed8").unwrap(), DyeOptions::default()).unwrap();
+        let model = Model::Dyes(dyes);
+        let material = Material {
+            reflectance: Sigmoid::flat(1.0),
+            fluorescence: Fluorescence::Dyes { first: 3, weight: 0.3, concentration: 0.6 },
+        };
+        let mixture = Mixture::of(&model, material);
+        let curves = Curves::of(&mixture, &Contract::default().on(Grid::FIT));
+        for (r, a) in curves.reflectance.iter().zip(&curves.absorption) {
+            // Rounding only.
+            assert!((r + a - 1.0).abs() < 1e-12);
+        }
+        assert!(curves.is_fluorescent());
+        assert_eq!(curves.emission.iter().copied().fold(0.0, f64::max), 1.0);
+    }
+}

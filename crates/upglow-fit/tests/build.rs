@@ -1,0 +1,126 @@
+//! Whole cubes: how good they are, and that they do not depend on how they were made.
+
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use upglow::{AnalyticModel, Cube, DyeModel, DyeOptions, DyeSet, Interpolation, Mixture, Model};
+use upglow::{Fluorescence, ModelOnGrid};
+use upglow_color::{Contract, Grid, LinearRgb, Metric};
+use upglow_fit::{BuildError, CubeSummary, FitOptions, Progress, Unwatched, Watch, build_cube};
+
+fn dyes(set: &str, optical_density: Option<f64>) -> Model {
+    let options = DyeOptions { optical_density, ..DyeOptions::default() };
+    Model::Dyes(DyeModel::new(DyeSet::named(set).unwrap(), options).unwrap())
+}
+
+fn build(model: &Model, options: FitOptions, resolution: usize) -> Cube {
+    build_cube(&Contract::default(), model, options, resolution, &Unwatched).unwrap()
+}
+
+/// Share of nodes within 1 ΔE00, percent, and mean ΔE00.
+fn quality(model: &Model, slope_max_per_nm: Option<f64>) -> (f64, f64) {
+    let options = FitOptions { slope_max_per_nm, ..FitOptions::default() };
+    let summary = CubeSummary::of(&build(model, options, 32));
+    println!("{slope_max_per_nm:?}: {summary:?}");
+    (100.0 * summary.within_1 as f64 / summary.nodes as f64, summary.mean_de2000)
+}
+
+/// The bounds are what an exhaustive search with the same model reached, less 0.4 points and 0.015.
+#[test]
+fn acescg_is_shown_as_well_as_an_exhaustive_search_shows_it() {
+    let (within_1, mean) = quality(&dyes("seed8", None), Some(0.01));
+    assert!(within_1 >= 78.5 && mean <= 0.83, "{within_1} {mean}");
+    let (within_1, mean) = quality(&dyes("seed8", Some(4.0)), Some(0.01));
+    assert!(within_1 >= 90.2 && mean <= 0.283, "{within_1} {mean}");
+    let (within_1, mean) = quality(&dyes("seed8", None), None);
+    assert!(within_1 >= 97.0 && mean <= 0.079, "{within_1} {mean}");
+}
+
+#[test]
+fn the_same_bytes_come_from_any_number_of_threads() {
+    for model in [dyes("open8", None), Model::Analytic(AnalyticModel::default())] {
+        let bytes = [1, 2, 5].map(|threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| build(&model, FitOptions::default(), 7)).to_bytes().unwrap()
+        });
+        assert!(bytes[0] == bytes[1] && bytes[0] == bytes[2]);
+    }
+}
+
+#[test]
+fn the_stored_difference_is_that_of_the_stored_material() {
+    let cube = build(&dyes("seed8", None), FitOptions::default(), 6);
+    let colorimetry = cube.contract().on(Grid::FIT);
+    let sums = ModelOnGrid::new(cube.model(), &colorimetry);
+    for (index, node) in cube.nodes().iter().enumerate() {
+        let target = colorimetry.xyz_from_rgb(cube.node_rgb(index));
+        let color = sums.color(cube.node_material(index));
+        let de2000 = Metric::De2000.distance(&colorimetry, target, color);
+        // Single precision of the stored number.
+        assert!((de2000 - f64::from(node.de2000)).abs() <= 1e-6 * de2000.max(1e-3));
+    }
+}
+
+#[test]
+fn between_exact_corners_every_color_is_exact() {
+    let cube = build(&dyes("seed8", None), FitOptions::default(), 9);
+    let colorimetry = cube.contract().on(Grid::FIT);
+    let sums = ModelOnGrid::new(cube.model(), &colorimetry);
+    let mut checked = 0;
+    for i in 0..4000_u32 {
+        let rgb = [i % 23, i / 23 % 19, i % 29].map(|v| f64::from(v) / 29.0);
+        let corners = cube.corners(LinearRgb(rgb)).unwrap();
+        if corners.iter().any(|&(n, w)| w > 0.0 && cube.nodes()[n].de2000 > 0.01) {
+            continue;
+        }
+        let mixture: Mixture<'_> = cube.lookup(LinearRgb(rgb), Interpolation::Blend).unwrap();
+        let target = colorimetry.xyz_from_rgb(LinearRgb(rgb));
+        let de2000 = Metric::De2000.distance(&colorimetry, target, mixture.color(&sums));
+        assert!(de2000 <= 0.01, "{rgb:?} {de2000}");
+        checked += 1;
+    }
+    assert!(checked > 1000, "{checked}");
+}
+
+#[test]
+fn a_reflectance_cube_does_not_fluoresce() {
+    let cube = build(&Model::Reflectance, FitOptions::default(), 5);
+    assert_eq!(CubeSummary::of(&cube).fluorescent, 0);
+    assert!((0..125).all(|i| cube.node_material(i).fluorescence == Fluorescence::None));
+}
+
+#[derive(Default)]
+struct StopAtOnce {
+    seen: AtomicBool,
+}
+
+impl Watch for StopAtOnce {
+    fn progress(&self, _: Progress) {
+        self.seen.store(true, Ordering::Relaxed);
+    }
+
+    fn stopped(&self) -> bool {
+        self.seen.load(Ordering::Relaxed)
+    }
+}
+
+#[test]
+fn a_stopped_build_says_so() {
+    let model = dyes("seed8", None);
+    let watch = StopAtOnce::default();
+    let stopped = build_cube(&Contract::default(), &model, FitOptions::default(), 16, &watch);
+    assert_eq!(stopped, Err(BuildError::Stopped));
+}
+
+#[test]
+fn options_out_of_range_are_refused() {
+    let model = Model::Reflectance;
+    let build = |options, resolution| {
+        let built = build_cube(&Contract::default(), &model, options, resolution, &Unwatched);
+        built.unwrap_err().to_string()
+    };
+    let steep = FitOptions { slope_max_per_nm: Some(-1.0), ..FitOptions::default() };
+    assert_eq!(build(steep, 4), "slope limit -1/nm, expected 0.0001 to 0.2/nm");
+    assert_eq!(build(FitOptions::default(), 1), "resolution 1, expected 2 to 256");
+}
