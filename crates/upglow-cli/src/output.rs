@@ -1,6 +1,6 @@
 //! Results on standard output: text for people, or one JSON document.
 
-use std::fmt::{self, Display, Write as _};
+use std::fmt::{self, Display};
 use std::io::{self, Write as _};
 
 use serde::Serialize;
@@ -13,7 +13,7 @@ pub(crate) trait Report: Serialize {
     fn text(&self) -> String;
 }
 
-/// How results are printed.
+/// How results are printed. JSON takes one line, so that the results of many runs are JSON Lines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Format {
     Text,
@@ -25,7 +25,7 @@ impl Format {
     pub(crate) fn print(self, report: &impl Report) -> Result<(), Failure> {
         let text = match self {
             Self::Text => report.text(),
-            Self::Json => serde_json::to_string_pretty(report)
+            Self::Json => serde_json::to_string(report)
                 .map(|json| json + "\n")
                 .map_err(|error| Failure::input("standard output", error))?,
         };
@@ -73,41 +73,54 @@ impl Display for Lines {
     }
 }
 
-/// A table with a head; the first column is text, the others are set flush right.
+/// Where the cells of a column stand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Side {
+    Left,
+    Right,
+}
+
+/// A table with a head.
 #[derive(Clone, Debug)]
-pub(crate) struct Table {
-    rows: Vec<Vec<String>>,
+pub(crate) struct Table<const N: usize> {
+    sides: [Side; N],
+    rows: Vec<[String; N]>,
 }
 
-impl Table {
-    pub(crate) fn new<const N: usize>(head: [&str; N]) -> Self {
-        Self { rows: vec![head.map(str::to_owned).to_vec()] }
+impl<const N: usize> Table<N> {
+    pub(crate) fn new(columns: [(&str, Side); N]) -> Self {
+        let sides = columns.map(|(_, side)| side);
+        Self { sides, rows: vec![columns.map(|(head, _)| head.to_owned())] }
     }
 
-    pub(crate) fn add<const N: usize>(&mut self, row: [String; N]) {
-        self.rows.push(row.to_vec());
+    pub(crate) fn add(&mut self, row: [String; N]) {
+        self.rows.push(row);
     }
 }
 
-impl Display for Table {
+impl<const N: usize> Display for Table<N> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let columns = self.rows[0].len();
         let width = |column: usize| {
             self.rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0)
         };
-        let widths: Vec<usize> = (0..columns).map(width).collect();
+        let widths: [usize; N] = std::array::from_fn(width);
         for row in &self.rows {
-            let mut line = String::new();
-            for (column, (cell, &width)) in row.iter().zip(&widths).enumerate() {
-                match column {
-                    0 => write!(line, "{cell:width$}")?,
-                    _ => write!(line, "  {cell:>width$}")?,
+            let cells = (0..N).map(|column| {
+                let (cell, width) = (&row[column], widths[column]);
+                match self.sides[column] {
+                    Side::Left => format!("{cell:width$}"),
+                    Side::Right => format!("{cell:>width$}"),
                 }
-            }
-            writeln!(f, "{}", line.trim_end())?;
+            });
+            writeln!(f, "{}", cells.collect::<Vec<_>>().join("  ").trim_end())?;
         }
         Ok(())
     }
+}
+
+/// The same number, without the sign of a negative zero.
+pub(crate) fn unsigned_zero(value: f64) -> f64 {
+    value + 0.0
 }
 
 /// Three numbers to four decimals, in columns.
@@ -132,8 +145,8 @@ mod tests {
     }
 
     #[test]
-    fn tables_are_set_flush_right_after_the_first_column() {
-        let mut table = Table::new(["light", "X"]);
+    fn columns_of_a_table_stand_left_or_right() {
+        let mut table = Table::new([("light", Side::Left), ("X", Side::Right)]);
         table.add(["D65".into(), "0.95".into()]);
         assert_eq!(table.to_string(), "light     X\nD65    0.95\n");
     }

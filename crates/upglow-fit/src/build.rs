@@ -145,7 +145,7 @@ fn sweep_node(fitter: &Fitter, lattice: Lattice, before: &[Fit], index: usize) -
         }
     }
     let color = fitter.model().colorimetry().xyz_from_rgb(lattice.rgb(index));
-    fitter.improve(color, known, &neighbors)
+    fitter.job(color).improve(known, &neighbors)
 }
 
 /// Whether two materials lead to the same place: nothing is gained by following both.

@@ -24,10 +24,13 @@
 
 mod build;
 mod fitter;
+mod job;
+mod least;
 mod options;
 mod parabola;
 mod problem;
 mod progress;
+mod search;
 mod solver;
 mod standing;
 mod starts;

@@ -7,6 +7,9 @@ const CENTER_NM: f64 = 565.0;
 /// Length of one unit of t, nm.
 const UNIT_NM: f64 = 100.0;
 
+/// Of a shape's two steepest points the one nearer to this is its coordinate, nm.
+pub(crate) const MIDDLE_NM: f64 = 540.0;
+
 /// A wavelength in the fit's own unit.
 pub(crate) fn scaled(lambda_nm: f64) -> f64 {
     (lambda_nm - CENTER_NM) / UNIT_NM
@@ -53,10 +56,55 @@ pub(crate) fn edge_chart([e, p, relative]: [f64; 3], slope_limit_per_nm: f64) ->
     ([p - b * e + k * e * e, b - 2.0 * k * e, k], jacobian)
 }
 
-/// The numbers of [`edge_chart`] for a reflectance: its steepest point nearer to `near_nm`.
-pub(crate) fn edge_numbers(parabola: Parabola, near_nm: f64, slope_limit_per_nm: f64) -> [f64; 3] {
-    let edge = sigmoid_of(parabola).to_edge(near_nm);
-    [scaled(edge.edge_nm), edge.level, edge.slope_per_nm / slope_limit_per_nm]
+/// The parabola of [`upglow::Features`] with shift = `numbers[0]` and width = `numbers[1]` (in t),
+/// and slope = `numbers[2]` · `slope_limit_per_nm`, which is not 0.
+///
+/// # Source
+///
+/// [konig], Algorithm 1; with σ the sign of the slope and P = σ|P| the parabola at the steepest
+/// point: |P|√(1 + P²) = 1/(6|s|w), c0 = s(1 + P²)^(3/2)/w, p = (5P² − 1)/(6P).
+pub(crate) fn feature_chart([z, w, relative]: [f64; 3], slope_limit_per_nm: f64) -> Chart {
+    let unit = slope_limit_per_nm * UNIT_NM;
+    let (s, sign) = (relative.abs() * unit, relative.signum());
+    let product = 1.0 / (6.0 * s * w);
+    let p = (0.5 * ((1.0 + 4.0 * product * product).sqrt() - 1.0)).sqrt();
+    let g = 1.0 + p * p;
+    let p_by_product = g.sqrt() / (1.0 + 2.0 * p * p);
+    let (p_by_w, p_by_s) = (-p_by_product * product / w, -p_by_product * product / s);
+    let c0 = sign * s * g * g.sqrt() / w;
+    let c0_by_p = 3.0 * p / g * c0;
+    let peak = sign * (5.0 * p * p - 1.0) / (6.0 * p);
+    let peak_by_p = sign * (5.0 + 1.0 / (p * p)) / 6.0;
+    let by_width = [c0_by_p * p_by_w - c0 / w, peak_by_p * p_by_w];
+    let by_slope = [c0_by_p * p_by_s + c0 / s, peak_by_p * p_by_s].map(|v| v * sign * unit);
+    let expand = |[c0_by, peak_by]: [f64; 2]| [z * z * c0_by + peak_by, -2.0 * z * c0_by, c0_by];
+    let by_shift = [2.0 * c0 * z, -2.0 * c0, 0.0];
+    let (by_width, by_slope) = (expand(by_width), expand(by_slope));
+    let jacobian = [0, 1, 2].map(|m| [by_shift[m], by_width[m], by_slope[m]]);
+    ([c0 * z * z + peak, -2.0 * c0 * z, c0], jacobian)
+}
+
+/// The numbers of [`feature_chart`] for a reflectance; `None` where it has no features.
+pub(crate) fn feature_numbers(edge: Edge, slope_limit_per_nm: f64) -> Option<[f64; 3]> {
+    let features = edge.to_sigmoid().to_vertex()?.to_features()?;
+    let slope = features.slope_per_nm / slope_limit_per_nm;
+    Some([scaled(features.shift_nm), features.width_nm / UNIT_NM, slope])
+}
+
+/// The greatest |dr/dλ| relative to `slope_limit_per_nm`, and its derivatives by the coefficients.
+///
+/// Where the slope is greatest it does not change with wavelength, so only the coefficients move it.
+pub(crate) fn steepness(parabola: Parabola, slope_limit_per_nm: f64) -> (f64, [f64; 3]) {
+    let edge = sigmoid_of(parabola).to_edge(CENTER_NM);
+    let t = scaled(edge.edge_nm);
+    let [_, q1, q2] = parabola;
+    let (x, x_slope) = (edge.level, q1 + 2.0 * q2 * t);
+    let g = 1.0 + x * x;
+    let unit = slope_limit_per_nm * UNIT_NM * x_slope.signum();
+    let scale = 0.5 / (g * g.sqrt()) / unit;
+    let by_value = -3.0 * x * x_slope / g * scale;
+    let by = [by_value, by_value * t + scale, (by_value * t + 2.0 * scale) * t];
+    (edge.slope_per_nm.abs() / slope_limit_per_nm, by)
 }
 
 /// The reflectance that [`edge_chart`] describes.
@@ -77,33 +125,54 @@ mod tests {
                 // Rounding only.
                 assert!((sigmoid_of(parabola).at(nm) - edge.at(nm)).abs() < 1e-9, "{numbers:?}");
             }
-            let back = edge_numbers(parabola, edge.edge_nm, 0.01);
-            let again = sigmoid_of(edge_chart(back, 0.01).0);
-            assert!((again.at(600.0) - edge.at(600.0)).abs() < 1e-9);
+        }
+    }
+
+    /// Derivatives against central differences of this step, which err by its square, relative to
+    /// derivatives near 10.
+    fn assert_derivatives(numbers: [f64; 3], chart: impl Fn([f64; 3]) -> Chart) {
+        const STEP: f64 = 1e-5;
+        let (_, jacobian) = chart(numbers);
+        for v in 0..3 {
+            let moved = |by: f64| {
+                let mut n = numbers;
+                n[v] += by;
+                chart(n).0
+            };
+            let (low, high) = (moved(-STEP), moved(STEP));
+            for m in 0..3 {
+                let quotient = (high[m] - low[m]) / (2.0 * STEP);
+                let scale = 1.0 + quotient.abs();
+                assert!((jacobian[m][v] - quotient).abs() < 1e-7 * scale, "{numbers:?} {v} {m}");
+            }
         }
     }
 
     #[test]
     fn derivatives_match_differences() {
-        // A central difference of this step errs by its square, relative to derivatives near 10.
-        const STEP: f64 = 1e-5;
         for numbers in [[0.3, 0.5, 1.0], [-1.2, -1.5, -0.7], [0.0, 0.0, 0.4]] {
-            let (_, jacobian) = edge_chart(numbers, 0.01);
-            for v in 0..3 {
-                let moved = |by: f64| {
-                    let mut n = numbers;
-                    n[v] += by;
-                    edge_chart(n, 0.01).0
-                };
-                let (low, high) = (moved(-STEP), moved(STEP));
-                for m in 0..3 {
-                    let quotient = (high[m] - low[m]) / (2.0 * STEP);
-                    let scale = 1.0 + quotient.abs();
-                    assert!(
-                        (jacobian[m][v] - quotient).abs() < 1e-7 * scale,
-                        "{numbers:?} {v} {m}"
-                    );
-                }
+            assert_derivatives(numbers, |n| edge_chart(n, 0.01));
+        }
+        for numbers in [[0.3, 0.5, 1.0], [-1.2, 1.5, -0.7], [0.1, 0.8, 0.4]] {
+            assert_derivatives(numbers, |n| feature_chart(n, 0.01));
+        }
+        for parabola in [[0.3, 0.5, 1.0], [-1.2, 1.5, -0.7], [0.1, -2.0, 0.0]] {
+            assert_derivatives(parabola, |q| {
+                let (value, by) = steepness(q, 0.01);
+                ([value, 0.0, 0.0], [by, [0.0; 3], [0.0; 3]])
+            });
+        }
+    }
+
+    #[test]
+    fn the_feature_chart_is_algorithm_1() {
+        for numbers in [[0.3, 0.5, 1.0], [-1.2, 1.5, -0.7]] {
+            let (parabola, _) = feature_chart(numbers, 0.01);
+            let edge = sigmoid_of(parabola).to_edge(550.0);
+            let back = feature_numbers(edge, 0.01).unwrap();
+            for k in 0..3 {
+                // Rounding only.
+                assert!((back[k] - numbers[k]).abs() < 1e-9, "{back:?}");
             }
         }
     }

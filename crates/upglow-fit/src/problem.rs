@@ -1,9 +1,12 @@
 //! The least-squares problems: what must become zero for a material to show its color.
 
-use upglow::{AnalyticModel, DyeModel, Emitted, ModelOnGrid};
+use upglow::{AnalyticModel, DyeModel, Edge, Emitted, ModelOnGrid};
 use upglow_color::{Goal, Matrix3, Xyz};
 
-use crate::parabola::{Chart, edge_chart, free_chart};
+use crate::parabola::{
+    Chart, MIDDLE_NM, edge_chart, edge_of, feature_chart, feature_numbers, free_chart, scaled,
+    sigmoid_of, steepness,
+};
 use crate::solver::{Jacobian, Residuals};
 use crate::sums::{CLEAR, Lanes, Reflected, Sums, lanes_from};
 
@@ -17,6 +20,13 @@ pub(crate) enum Shape {
         /// The limit, 1/nm.
         slope_limit_per_nm: f64,
     },
+    /// Shift, width and slope relative to this limit; a slope does not change its sign.
+    Features {
+        /// The limit, 1/nm.
+        slope_limit_per_nm: f64,
+        /// 1 for valleys, −1 for peaks.
+        sign: f64,
+    },
 }
 
 /// Coefficients beyond this are steps between two samples.
@@ -26,12 +36,51 @@ const EDGE_BOUND: f64 = 4.0;
 /// Greatest level of the steepest point: at the slope limit 0.01/nm the extremum is then 2.5 nm
 /// away, half a step of the sums. Larger lets a fit hide a spike between two samples.
 const LEVEL_BOUND: f64 = 2.5;
+/// Widths of features, in 100 nm. Grays lie beyond the greatest.
+const WIDTH_BOUNDS: [f64; 2] = [0.025, 30.0];
+/// Least slope of features, relative to the limit: 0 is no slope at all.
+const LEAST_SLOPE: f64 = 1e-3;
+
+/// Shift at 565 nm, width 100 nm, half the limit's slope.
+const SOFT_FEATURES: [f64; 3] = [0.0, 1.0, 0.5];
 
 impl Shape {
     fn chart(self, numbers: [f64; 3]) -> Chart {
         match self {
             Self::Free => free_chart(numbers),
             Self::Edge { slope_limit_per_nm } => edge_chart(numbers, slope_limit_per_nm),
+            Self::Features { slope_limit_per_nm, .. } => feature_chart(numbers, slope_limit_per_nm),
+        }
+    }
+
+    /// The numbers of a reflectance in these coordinates.
+    ///
+    /// Features of a flat reflectance are those of a wide soft one; of one of the other sign,
+    /// those of a shape of this sign in the same place.
+    pub(crate) fn numbers(self, edge: Edge) -> [f64; 3] {
+        match self {
+            Self::Free => {
+                let shape = Self::Edge { slope_limit_per_nm: 1.0 };
+                shape.chart(shape.numbers(edge)).0
+            }
+            Self::Edge { slope_limit_per_nm } => {
+                [scaled(edge.edge_nm), edge.level, edge.slope_per_nm / slope_limit_per_nm]
+            }
+            Self::Features { slope_limit_per_nm, sign } => {
+                let [shift, width, slope] =
+                    feature_numbers(edge, slope_limit_per_nm).unwrap_or(SOFT_FEATURES);
+                [shift, width, sign * slope.abs()]
+            }
+        }
+    }
+
+    /// The reflectance with these numbers.
+    pub(crate) fn edge(self, numbers: [f64; 3]) -> Edge {
+        match self {
+            Self::Edge { slope_limit_per_nm } => edge_of(numbers, slope_limit_per_nm),
+            Self::Free | Self::Features { .. } => {
+                sigmoid_of(self.chart(numbers).0).to_edge(MIDDLE_NM)
+            }
         }
     }
 
@@ -40,6 +89,10 @@ impl Shape {
             Self::Free => [[-FREE_BOUND, FREE_BOUND]; 3],
             Self::Edge { .. } => {
                 [[-EDGE_BOUND, EDGE_BOUND], [-LEVEL_BOUND, LEVEL_BOUND], [-1.0, 1.0]]
+            }
+            Self::Features { sign, .. } => {
+                let slopes = if sign > 0.0 { [LEAST_SLOPE, 1.0] } else { [-1.0, -LEAST_SLOPE] };
+                [[-EDGE_BOUND, EDGE_BOUND], WIDTH_BOUNDS, slopes]
             }
         }
     }
@@ -182,6 +235,35 @@ impl<const N: usize, P: Residuals<3, N>> Residuals<4, N> for LeastProblem<'_, P>
         by_x[CONCENTRATION] = self.concentration_weight;
         let cost = self.concentration_weight * x[CONCENTRATION];
         ([r0 + y0, r1 + y1, r2 + y2, cost], [j0, j1, j2, by_x])
+    }
+
+    fn bounds(&self) -> [[f64; 2]; N] {
+        self.problem.bounds()
+    }
+}
+
+/// A problem in free coefficients whose fourth residual is how far the reflectance is above the
+/// slope limit.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LimitedProblem<P> {
+    pub(crate) problem: P,
+    pub(crate) slope_limit_per_nm: f64,
+}
+
+/// What a slope of twice the limit counts, in units of the metric. Larger makes the solver crawl
+/// along the limit, smaller leaves it too far above.
+const STEEPNESS_WEIGHT: f64 = 100.0;
+
+impl<const N: usize, P: Residuals<3, N>> Residuals<4, N> for LimitedProblem<P> {
+    fn eval(&self, x: &[f64; N]) -> ([f64; 4], Jacobian<4, N>) {
+        let ([r0, r1, r2], [j0, j1, j2]) = self.problem.eval(x);
+        let (steepness, by_parabola) = steepness([x[0], x[1], x[2]], self.slope_limit_per_nm);
+        let mut by_x = [0.0; N];
+        if steepness <= 1.0 {
+            return ([r0, r1, r2, 0.0], [j0, j1, j2, by_x]);
+        }
+        (0..3).for_each(|m| by_x[m] = STEEPNESS_WEIGHT * by_parabola[m]);
+        ([r0, r1, r2, STEEPNESS_WEIGHT * (steepness - 1.0)], [j0, j1, j2, by_x])
     }
 
     fn bounds(&self) -> [[f64; 2]; N] {

@@ -1,24 +1,31 @@
 //! Where fits start: a table of materials at the slope limit, and the ones nearest to a color.
 
-use upglow::{AnalyticModel, DyeModel, Fluorescence, Model, ModelOnGrid};
+use upglow::{AnalyticModel, DyeModel, Edge, Fluorescence, Model, ModelOnGrid};
 use upglow_color::{Goal, Lab, Xyz, ciede2000_residuals, lab_from_xyz};
 
-use crate::parabola::{edge_chart, edge_numbers};
+use crate::Fit;
+use crate::parabola::MIDDLE_NM;
+use crate::problem::Shape;
 use crate::sums::{Lanes, Sums};
 
 /// One material to start from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Start {
-    /// Edge, level and relative slope, as in [`edge_chart`].
-    pub(crate) shape: [f64; 3],
+    pub(crate) reflectance: Edge,
     pub(crate) fluorescence: Fluorescence,
+}
+
+impl From<Fit> for Start {
+    fn from(fit: Fit) -> Self {
+        Self { reflectance: fit.reflectance, fluorescence: fit.fluorescence }
+    }
 }
 
 /// The start materials and their colors, sorted into buckets of like fluorescence, or of like shape
 /// where nothing fluoresces.
 #[derive(Clone, Debug)]
 pub(crate) struct StartTable {
-    shapes: Vec<[f64; 3]>,
+    shapes: Vec<Edge>,
     entries: Vec<Entry>,
     /// First entry of each bucket, and the end.
     buckets: Vec<usize>,
@@ -49,9 +56,6 @@ const PASSIVE_BUCKETS: usize = 24;
 const PEAKS_NM: [f64; 11] =
     [400.0, 431.0, 462.0, 493.0, 524.0, 555.0, 586.0, 617.0, 648.0, 679.0, 710.0];
 const SHIFTS_NM: [f64; 4] = [15.0, 40.0, 75.0, 110.0];
-/// Of a shape's two edges the one nearer to this is its coordinate, nm.
-pub(crate) const MIDDLE_NM: f64 = 540.0;
-
 /// A bucket of like fluorescences, and what each takes from a reflectance and adds to its color.
 struct Variant {
     bucket: usize,
@@ -70,8 +74,7 @@ impl StartTable {
         let mut sorted: Vec<(usize, Entry)> = Vec::new();
         let per_kind = shapes.len().div_ceil(PASSIVE_BUCKETS);
         for (index, &shape) in (0..).zip(&shapes) {
-            let (parabola, _) = edge_chart(shape, slope_limit_per_nm);
-            let r = sums.reflectance(parabola);
+            let r = sums.reflectance(Shape::Free.numbers(shape));
             let reflected = sums.integrate(|i| r[i]);
             let taken: Vec<[f64; 3]> =
                 absorbers.iter().map(|a| sums.integrate(|i| r[i] * a[i])).collect();
@@ -109,7 +112,7 @@ impl StartTable {
             .collect();
         best.sort_by(|x, y| x.0.total_cmp(&y.0));
         let start = |(_, entry): (f32, &Entry)| Start {
-            shape: self.shapes[entry.shape as usize],
+            reflectance: self.shapes[entry.shape as usize],
             fluorescence: entry.fluorescence,
         };
         best.into_iter().map(start).collect()
@@ -159,14 +162,14 @@ impl Variant {
 }
 
 /// Edges over the visible range, rising and falling, of peaks and valleys of each width.
-fn shapes(slope_limit_per_nm: f64) -> Vec<[f64; 3]> {
+fn shapes(slope_limit_per_nm: f64) -> Vec<Edge> {
     let mut shapes = Vec::new();
     let mut slope = slope_limit_per_nm;
     loop {
         for width_nm in WIDTHS_NM {
             for sign in [1.0, -1.0] {
                 for falling in [false, true] {
-                    add_shapes(&mut shapes, slope, slope_limit_per_nm, width_nm * sign, falling);
+                    add_shapes(&mut shapes, slope, width_nm * sign, falling);
                 }
             }
         }
@@ -178,26 +181,19 @@ fn shapes(slope_limit_per_nm: f64) -> Vec<[f64; 3]> {
 }
 
 /// `signed_width_nm` is positive for valleys.
-fn add_shapes(
-    shapes: &mut Vec<[f64; 3]>,
-    slope_per_nm: f64,
-    slope_limit_per_nm: f64,
-    signed_width_nm: f64,
-    falling: bool,
-) {
+fn add_shapes(shapes: &mut Vec<Edge>, slope_per_nm: f64, signed_width_nm: f64, falling: bool) {
     let level = level_at(slope_per_nm, signed_width_nm);
-    let relative = slope_per_nm / slope_limit_per_nm * if falling { -1.0 } else { 1.0 };
+    let direction = if falling { -1.0 } else { 1.0 };
     let [first, last, step] = EDGES_NM;
     for edge_nm in (first..=last).step_by(step as usize).map(f64::from) {
         // A rising edge of a valley has the valley's other edge below it.
-        let other_nm = edge_nm - 2.0 * signed_width_nm * if falling { -1.0 } else { 1.0 };
+        let other_nm = edge_nm - 2.0 * signed_width_nm * direction;
         // Where the other edge is in range too, the other direction lists the same shape.
         if falling && (f64::from(first)..=f64::from(last)).contains(&other_nm) {
             continue;
         }
-        let numbers = [crate::parabola::scaled(edge_nm), level, relative];
-        let (parabola, _) = edge_chart(numbers, slope_limit_per_nm);
-        shapes.push(edge_numbers(parabola, MIDDLE_NM, slope_limit_per_nm));
+        let edge = Edge { edge_nm, level, slope_per_nm: slope_per_nm * direction };
+        shapes.push(edge.to_sigmoid().to_edge(MIDDLE_NM));
     }
 }
 

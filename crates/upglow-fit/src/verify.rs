@@ -23,7 +23,7 @@ use spectra::Spectra;
 /// How a cube is verified.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VerifyOptions {
-    /// Random colors between the nodes; default 1 000 000.
+    /// Random colors between the nodes; default 1 000 000. Each takes 40 bytes and 15 µs of a core.
     pub points: usize,
     /// How colors between nodes get their material; default blend.
     pub interpolation: Interpolation,
@@ -79,22 +79,29 @@ pub fn verify(
 }
 
 fn checks(cube: &Cube, inspector: &Inspector<'_>, findings: Findings) -> Vec<Check> {
-    let exact = findings.laws[Law::Exact as usize].checked;
+    let between_exact = between_exact(inspector, &findings);
     let laws = inspector.rules().iter().zip(findings.laws);
     let mut checks: Vec<Check> = laws.map(|(rule, tally)| rule.check(tally, cube)).collect();
     debug_assert_eq!(checks.len(), LAWS.len());
     checks.push(dye_curves(cube.model()));
-    let points = findings.points.values.len();
     checks.extend(grid_checks(GRID_NODES, findings.grid_nodes, cube));
     checks.extend(grid_checks(GRID_POINTS, findings.grid_points, cube));
     checks.extend(point_figures(findings.points, cube));
-    checks.push(Check {
+    checks.push(between_exact);
+    checks
+}
+
+/// The share of random colors for which blend promises to be exact.
+fn between_exact(inspector: &Inspector<'_>, findings: &Findings) -> Check {
+    let law = Law::Exact as usize;
+    let points = if inspector.rules()[law].applies { findings.points.values.len() } else { 0 };
+    let share = findings.laws[law].checked as f64 / points.max(1) as f64;
+    Check {
         name: "points-between-exact",
         about: "share of random colors whose nodes are all exact",
         unit: "",
-        ..figure(exact as f64 / points.max(1) as f64, points)
-    });
-    checks
+        ..figure(share, points)
+    }
 }
 
 /// A number to report.
@@ -240,9 +247,11 @@ mod tests {
         let edge = Edge { edge_nm: 450.0 + 200.0 * r, level, slope_per_nm: 0.0099 * (r - b) };
         let fluorescence = match model {
             Model::Reflectance => Fluorescence::None,
-            Model::Dyes(_) => {
-                Fluorescence::Dyes { first: (7.0 * r) as usize, weight: g, concentration: b }
-            }
+            Model::Dyes(_) => Fluorescence::Dyes {
+                first: if r < 0.5 { 2 } else { 7 },
+                weight: g,
+                concentration: b,
+            },
             Model::Analytic(_) => Fluorescence::Analytic {
                 emission_peak_nm: 450.0 + 200.0 * g,
                 stokes_shift_nm: 60.0,
@@ -267,9 +276,9 @@ mod tests {
             change(index, &mut node);
             let (target, color) =
                 (colorimetry.xyz_from_rgb(rgb), sums.color(node.material(&model)));
-            let de2000 = Metric::De2000.distance(&colorimetry, target, color) as f32;
+            let de2000 = Metric::De2000.distance(&colorimetry, target, color);
             // Not a number where the change made it so, which no cube stores.
-            node.de2000 += de2000.max(0.0);
+            node.de2000 += Node::new(edge, fluorescence, de2000.max(0.0)).de2000;
             node
         };
         let nodes = (0..RESOLUTION.pow(3)).map(node).collect();
@@ -289,8 +298,7 @@ mod tests {
         });
         let report = report(&cube);
         assert!(!report.holds());
-        let broken = report.broken().filter(|check| check.verdict == Verdict::Broken);
-        broken.map(|check| (check.name, check.worst.clone().unwrap().place)).collect()
+        report.broken().map(|check| (check.name, check.worst.clone().unwrap().place)).collect()
     }
 
     #[test]
@@ -314,9 +322,8 @@ mod tests {
 
     #[test]
     fn a_tinted_gray_is_caught() {
-        let names: Vec<_> = broken(GRAY, |node| node.reflectance[2] = 1e-5).into_iter().collect();
-        let names: Vec<_> = names.iter().map(|(name, _)| *name).collect();
-        assert_eq!(names, ["gray-flat", "gray-value"]);
+        let found = broken(GRAY, |node| node.reflectance[2] = 1e-5);
+        assert_eq!(found.iter().map(|f| f.0).collect::<Vec<_>>(), ["gray-flat", "gray-value"]);
     }
 
     #[test]
@@ -353,8 +360,7 @@ mod tests {
     #[test]
     fn numbers_without_bound_break_laws_but_nothing_else() {
         let found = broken(COLORED, |node| node.reflectance = [3e38, 3e38, 3e38]);
-        let names: Vec<_> = found.iter().map(|(name, _)| *name).collect();
-        assert_eq!(names[..3], ["energy", "bounds", "slope"]);
+        assert_eq!([0, 1, 2].map(|i| found[i].0), ["energy", "bounds", "slope"]);
     }
 
     #[test]

@@ -108,6 +108,7 @@ impl<'a> Shown<'a> {
                 .map(|part| PartReport::new(part, self.cube.model()))
                 .collect(),
             illuminant: self.cube.contract().illuminant.name().into(),
+            adaptation: self.cube.contract().adaptation.to_string(),
             lights: self.lights(),
             plot: plan.plot.as_ref().map(|path| path.display().to_string()),
             curves: CurvesReport::new(&self.curves),

@@ -6,8 +6,11 @@ use serde::Serialize;
 use upglow::{Fluorescence, Material, Model, Vertex};
 use upglow_fit::CubeSummary;
 
-use crate::output::{Lines, Report, Table, triple};
+use crate::output::{Lines, Report, Side, Table, triple, unsigned_zero};
 use crate::plot::Curves;
+
+/// Beyond this a miss shows beside the color itself; smaller would cry over what nobody sees.
+const VISIBLE_DE2000: f64 = 1.0;
 
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct ColorReport {
@@ -22,6 +25,7 @@ pub(crate) struct ColorReport {
     pub(crate) standing: StandingReport,
     pub(crate) parts: Vec<PartReport>,
     pub(crate) illuminant: String,
+    pub(crate) adaptation: String,
     pub(crate) lights: Vec<LightReport>,
     pub(crate) plot: Option<String>,
     pub(crate) curves: CurvesReport,
@@ -91,9 +95,9 @@ impl PartReport {
         let features = sigmoid.to_vertex().and_then(Vertex::to_features);
         Self {
             weight,
-            c0: sigmoid.c0,
-            c1: sigmoid.c1,
-            c2: sigmoid.c2,
+            c0: unsigned_zero(sigmoid.c0),
+            c1: unsigned_zero(sigmoid.c1),
+            c2: unsigned_zero(sigmoid.c2),
             steepest_per_nm: sigmoid.steepest_slope_per_nm(),
             shift_nm: features.map(|f| f.shift_nm),
             width_nm: features.map(|f| f.width_nm),
@@ -124,10 +128,14 @@ impl FluorescenceReport {
         match self {
             Self::Dyes { dye_a, dye_b, weight, .. } => {
                 let shares = [(dye_a, 1.0 - weight), (dye_b, weight)];
-                shares.into_iter().filter(|(_, share)| *share > 0.0).map(|(name, _)| name).collect()
+                shares
+                    .into_iter()
+                    .filter(|(_, share)| *share > 0.0)
+                    .map(|(name, _)| format!("dye {name}"))
+                    .collect()
             }
-            Self::Analytic { emission_peak_nm, stokes_shift_nm, .. } => {
-                vec![format!("peak {emission_peak_nm:.0} nm, shift {stokes_shift_nm:.0} nm")]
+            Self::Analytic { emission_peak_nm, .. } => {
+                vec![format!("emission peak {emission_peak_nm:.0} nm")]
             }
         }
     }
@@ -181,13 +189,17 @@ impl ColorReport {
                 format!("looked up, {interpolation}, a mixture of {n} materials")
             }
         };
-        let exact = if self.de2000 <= CubeSummary::EXACT_DE2000 { ", exact" } else { "" };
+        let judgment = match self.de2000 {
+            found if found <= CubeSummary::EXACT_DE2000 => ", exact",
+            found if found > VISIBLE_DE2000 => ", visibly off: the model does not reach the color",
+            _ => "",
+        };
         let mut lines = Lines::default();
         lines
             .add("color", format_args!("{} ({r}, {g}, {b})", self.rgb_space))
             .add("stands", self.standing.text())
             .add("material", material)
-            .add("ΔE00", format_args!("{:.4}{exact}", self.de2000));
+            .add("ΔE00", format_args!("{:.4}{judgment}", self.de2000));
         if let Some(plot) = &self.plot {
             lines.add("plot", plot);
         }
@@ -196,7 +208,7 @@ impl ColorReport {
 
     fn shapes(&self) -> String {
         let head = ["part", "weight", "shift nm", "width nm", "slope /nm", "c0", "c1", "c2"];
-        let mut table = Table::new(head);
+        let mut table = Table::new(head.map(|name| (name, Side::Right)));
         for (number, part) in (1..).zip(&self.parts) {
             let without = if part.steepest_per_nm == 0.0 { "flat" } else { "straight" };
             let optional = |value: Option<f64>, decimals: usize| {
@@ -217,57 +229,75 @@ impl ColorReport {
     }
 
     fn fluorescence(&self) -> String {
-        let mut dyes =
-            Table::new(["part", "concentration", "first dye", "share", "second dye", "share"]);
-        let mut bells =
-            Table::new(["part", "concentration", "emission peak nm", "Stokes shift nm"]);
-        let (mut any_dyes, mut any_bells) = (false, false);
+        let (dyes, bells) = (self.dye_table(), self.bell_table());
+        dyes.or(bells).unwrap_or_else(|| "no fluorescence\n".into())
+    }
+
+    /// `None` where no part has dyes.
+    fn dye_table(&self) -> Option<String> {
+        let mut table = Table::new([
+            ("part", Side::Right),
+            ("concentration", Side::Right),
+            ("share", Side::Right),
+            ("dye", Side::Left),
+            ("share", Side::Right),
+            ("dye", Side::Left),
+        ]);
+        let mut found = false;
         for (number, part) in (1..).zip(&self.parts) {
-            match &part.fluorescence {
-                Some(FluorescenceReport::Dyes { dye_a, dye_b, weight, concentration }) => {
-                    any_dyes = true;
-                    dyes.add([
-                        format!("{number}"),
-                        format!("{concentration:.4}"),
-                        dye_a.clone(),
-                        format!("{:.4}", 1.0 - weight),
-                        dye_b.clone(),
-                        format!("{weight:.4}"),
-                    ]);
-                }
-                Some(FluorescenceReport::Analytic {
-                    emission_peak_nm,
-                    stokes_shift_nm,
-                    concentration,
-                }) => {
-                    any_bells = true;
-                    bells.add([
-                        format!("{number}"),
-                        format!("{concentration:.4}"),
-                        format!("{emission_peak_nm:.2}"),
-                        format!("{stokes_shift_nm:.2}"),
-                    ]);
-                }
-                None => {}
+            if let Some(FluorescenceReport::Dyes { dye_a, dye_b, weight, concentration }) =
+                &part.fluorescence
+            {
+                found = true;
+                table.add([
+                    format!("{number}"),
+                    format!("{concentration:.4}"),
+                    format!("{:.4}", 1.0 - weight),
+                    dye_a.clone(),
+                    format!("{weight:.4}"),
+                    dye_b.clone(),
+                ]);
             }
         }
-        match (any_dyes, any_bells) {
-            (true, _) => dyes.to_string(),
-            (_, true) => bells.to_string(),
-            _ => "no fluorescence\n".into(),
+        found.then(|| table.to_string())
+    }
+
+    /// `None` where no part has bells.
+    fn bell_table(&self) -> Option<String> {
+        let head = ["part", "concentration", "emission peak nm", "Stokes shift nm"];
+        let mut table = Table::new(head.map(|name| (name, Side::Right)));
+        let mut found = false;
+        for (number, part) in (1..).zip(&self.parts) {
+            if let Some(FluorescenceReport::Analytic {
+                emission_peak_nm,
+                stokes_shift_nm,
+                concentration,
+            }) = &part.fluorescence
+            {
+                found = true;
+                table.add([
+                    format!("{number}"),
+                    format!("{concentration:.4}"),
+                    format!("{emission_peak_nm:.2}"),
+                    format!("{stokes_shift_nm:.2}"),
+                ]);
+            }
         }
+        found.then(|| table.to_string())
     }
 
     fn colors(&self) -> String {
-        let mut table = Table::new(["light", "X        Y        Z", "R        G        B"]);
+        let head = ["light", "X        Y        Z", "R        G        B"];
+        let sides = [Side::Left, Side::Right, Side::Right];
+        let mut table = Table::new([0, 1, 2].map(|column| (head[column], sides[column])));
         for light in &self.lights {
             table.add([light.name.clone(), triple(light.xyz), triple(light.rgb)]);
         }
-        let (space, own) = (&self.rgb_space, &self.illuminant);
+        let Self { rgb_space: space, illuminant: own, adaptation, .. } = self;
         format!(
             "{table}\
-             RGB is linear {space}. White is Y = 1 under each light but the lamp, which has as much\n\
-             power as {own} and is seen by an eye adapted to {own}.\n"
+             RGB is linear {space}, adaptation {adaptation}. White is Y = 1 under each light but the\n\
+             lamp, which has as much power as {own} and is seen by an eye adapted to {own}.\n"
         )
     }
 }

@@ -8,7 +8,7 @@ use upglow::{Cube, Model, Node, Vertex};
 use crate::args::ExportArgs;
 use crate::failure::Failure;
 use crate::files;
-use crate::output::{Format, Lines, Report};
+use crate::output::{Format, Lines, Report, unsigned_zero};
 
 const HEADER: &str = "r,g,b,c0,c1,c2,shift_nm,width_nm,slope_per_nm,dye_a,dye_b,weight,\
                       concentration,emission_peak_nm,stokes_shift_nm,de2000";
@@ -53,7 +53,8 @@ fn shape_cells(node: &Node) -> String {
         || ",,".to_owned(),
         |f| format!("{},{},{}", f.shift_nm, f.width_nm, f.slope_per_nm),
     );
-    format!("{},{},{},{features}", sigmoid.c0, sigmoid.c1, sigmoid.c2)
+    let [c0, c1, c2] = [sigmoid.c0, sigmoid.c1, sigmoid.c2].map(unsigned_zero);
+    format!("{c0},{c1},{c2},{features}")
 }
 
 /// First and second dye, weight, concentration, emission peak, Stokes shift: empty where the model

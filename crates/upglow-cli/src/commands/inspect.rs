@@ -7,7 +7,7 @@ use super::summary::SummaryReport;
 use crate::args::InspectArgs;
 use crate::failure::{Failure, io_message};
 use crate::files;
-use crate::output::{Format, Lines, Report, Table};
+use crate::output::{Format, Lines, Report, Side, Table};
 
 #[derive(Clone, Debug, Serialize)]
 struct InspectReport {
@@ -144,7 +144,8 @@ impl ModelReport {
                 lines.add("model", "reflectance, no fluorescence");
             }
             Self::Dyes { set, dyes, mixing, accounting, quantum_yield, optical_density } => {
-                let density = optical_density.map_or("thin solution".into(), |a| a.to_string());
+                let density =
+                    optical_density.map_or("none, a thin solution".into(), |a| a.to_string());
                 lines
                     .add("model", "dyes")
                     .add("dyes", format_args!("{set}, {} in a ring", dyes.len()))
@@ -167,7 +168,12 @@ impl ModelReport {
     /// The dyes as a table; nothing for other models.
     fn dye_table(&self) -> String {
         let Self::Dyes { dyes, .. } = self else { return String::new() };
-        let mut table = Table::new(["dye", "yield used", "yield measured", "mean emission"]);
+        let mut table = Table::new([
+            ("dye", Side::Left),
+            ("yield used", Side::Right),
+            ("yield measured", Side::Right),
+            ("mean emission", Side::Right),
+        ]);
         for dye in dyes {
             let measured = dye.measured_quantum_yield.map_or("unknown".into(), |q| q.to_string());
             table.add([

@@ -49,7 +49,7 @@ impl SummaryReport {
             .add("within 2", format_args!("{}  ΔE00 ≤ 2", share(self.within_2)))
             .add("fluorescent", share(self.fluorescent))
             .add("mean ΔE00", format_args!("{:.3}", self.mean_de2000))
-            .add("95 % below", format_args!("{:.3}", self.p95_de2000))
+            .add("p95 ΔE00", format_args!("{:.3}", self.p95_de2000))
             .add("max ΔE00", format_args!("{:.3}", self.max_de2000));
     }
 }

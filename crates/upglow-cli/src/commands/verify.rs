@@ -7,7 +7,7 @@ use super::on_threads;
 use crate::args::VerifyArgs;
 use crate::failure::Failure;
 use crate::files;
-use crate::output::{Format, Report, Table};
+use crate::output::{Format, Report, Side, Table};
 use crate::progress::Bar;
 
 #[derive(Clone, Debug, Serialize)]
@@ -116,7 +116,14 @@ impl OffenderReport {
 
 impl Report for VerificationReport {
     fn text(&self) -> String {
-        let mut table = Table::new(["check", "verdict", "worst", "limit", "unit", "checked"]);
+        let mut table = Table::new([
+            ("check", Side::Left),
+            ("verdict", Side::Left),
+            ("worst", Side::Right),
+            ("limit", Side::Right),
+            ("unit", Side::Left),
+            ("what", Side::Left),
+        ]);
         for check in &self.checks {
             let value = if check.applies() { short(check.value) } else { String::new() };
             table.add([
@@ -124,8 +131,8 @@ impl Report for VerificationReport {
                 check.verdict.clone(),
                 value,
                 check.limit.map_or(String::new(), short),
-                check.unit.into(),
-                check.checked.to_string(),
+                if check.unit == "CIEDE2000" { "ΔE00" } else { check.unit }.into(),
+                check.about.into(),
             ]);
         }
         let held = if self.holds { "Every law holds" } else { "A law is broken" };

@@ -11,6 +11,9 @@ const FIRST_NM: f64 = 300.0;
 /// Last wavelength of every picture, nm.
 const LAST_NM: f64 = 780.0;
 
+/// Less than this is no wider than a line from zero.
+const VISIBLE: f64 = 1e-3;
+
 /// The curves of a material on [`Grid::FINE`].
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Curves {
@@ -36,6 +39,17 @@ impl Curves {
 
     pub(crate) fn is_fluorescent(&self) -> bool {
         self.emission.iter().any(|&value| value > 0.0)
+    }
+
+    /// The points of a curve that a picture shows, without the zeros before and after it.
+    fn lifted<'c>(&'c self, curve: &'c [f64]) -> impl Iterator<Item = (f64, f64)> + 'c {
+        let above = |v: &f64| *v > VISIBLE;
+        let first = curve.iter().position(above).unwrap_or(curve.len()).saturating_sub(1);
+        let last = curve.iter().rposition(above).map_or(0, |last| last + 1);
+        let nm = &self.wavelengths_nm;
+        let range = move |points: &usize| (first..=last).contains(points);
+        let points = (0..nm.len()).filter(range).map(|i| (nm[i], curve[i]));
+        points.filter(|(nm, _)| (FIRST_NM..=LAST_NM).contains(nm))
     }
 
     /// The points of a curve that a picture shows.

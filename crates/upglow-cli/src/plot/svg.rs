@@ -13,6 +13,9 @@ const RIGHT: f64 = 636.0;
 const TOP: f64 = 28.0;
 const BOTTOM: f64 = 448.0;
 
+/// The value at the top: curves that reach 1 do not touch the frame.
+const HIGHEST: f64 = 1.05;
+
 /// Left edge of the legend and the swatches.
 const SIDE: f64 = 668.0;
 const SWATCH: f64 = 100.0;
@@ -52,7 +55,7 @@ pub(crate) fn draw(figure: &Figure<'_>) -> String {
             svg,
             "<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"2.4\" \
              stroke-linejoin=\"round\" stroke-dasharray=\"{}\"/>",
-            points(figure.curves, stroke.curve),
+            points(figure.curves.lifted(stroke.curve)),
             stroke.color,
             stroke.dashes
         );
@@ -77,18 +80,18 @@ fn x_of(nm: f64) -> f64 {
 }
 
 fn y_of(value: f64) -> f64 {
-    BOTTOM + value * (TOP - BOTTOM)
+    BOTTOM + value / HIGHEST * (TOP - BOTTOM)
 }
 
-fn points(curves: &Curves, curve: &[f64]) -> String {
+fn points(curve: impl Iterator<Item = (f64, f64)>) -> String {
     let point = |(nm, value)| format!("{:.2},{:.2}", x_of(nm), y_of(value));
-    curves.shown(curve).map(point).collect::<Vec<_>>().join(" ")
+    curve.map(point).collect::<Vec<_>>().join(" ")
 }
 
 fn emission_area(curves: &Curves) -> String {
+    let area = points(curves.shown(&curves.emission));
     format!(
-        "<polygon points=\"{LEFT},{BOTTOM} {} {RIGHT},{BOTTOM}\" fill=\"#d55e00\" fill-opacity=\"0.08\"/>\n",
-        points(curves, &curves.emission)
+        "<polygon points=\"{LEFT},{BOTTOM} {area} {RIGHT},{BOTTOM}\" fill=\"#d55e00\" fill-opacity=\"0.08\"/>\n"
     )
 }
 
@@ -231,7 +234,7 @@ mod tests {
         let passive = curves(0.0);
         let svg = draw(&figure(&passive, "a"));
         assert_eq!(svg.matches("<polyline").count(), 1);
-        assert!(svg.contains(&format!("points=\"{LEFT:.2},{:.2}", y_of(0.5))));
+        assert!(svg.contains(&format!("points=\"{LEFT:.2},{:.2}", y_of(0.5))), "{svg}");
         assert!(!svg.contains("NaN"));
     }
 }

@@ -77,17 +77,17 @@ fn level_label(row: usize) -> &'static str {
 
 fn axis() -> String {
     let mut ticks = vec!['─'; COLUMNS];
-    let mut labels = vec![' '; COLUMNS + 4];
+    let mut labels = vec![' '; COLUMNS + 2];
     for nm in LABELS_NM {
         let column = dot_of(f64::from(nm), FIRST_NM, LAST_NM, DOTS_ACROSS) / 2;
         ticks[column] = '┬';
         for (k, digit) in nm.to_string().chars().enumerate() {
-            labels[(column + k).saturating_sub(1)] = digit;
+            labels[column + k] = digit;
         }
     }
     let text = |chars: Vec<char>| chars.into_iter().collect::<String>();
     let labels = text(labels);
-    format!("    └{}\n     {} nm\n", text(ticks), labels.trim_end())
+    format!("    └{}\n    {} nm\n", text(ticks), labels.trim_end())
 }
 
 /// The number of the dot that a value falls on.

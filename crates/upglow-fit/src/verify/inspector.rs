@@ -7,7 +7,7 @@ use super::VerifyOptions;
 use super::laws::{LAWS, Law, Rule};
 use super::spectra::{Sampler, Spectra};
 use super::subjects::Subjects;
-use super::tally::{Finding, Subject, Tally, greatest};
+use super::tally::{Finding, Subject, Tally, greatest, worse};
 use crate::CubeSummary;
 
 /// Random colors that are compared with the run-time library. Fewer would miss the rarer dyes;
@@ -139,13 +139,13 @@ impl<'c> Inspector<'c> {
     fn see_light(&self, subject: Subject, spectra: &Spectra, findings: &mut Findings) {
         let (albedo, at) = greatest(spectra.albedo());
         self.see(Law::Energy, subject, albedo, self.nm(at), findings);
-        let outside = |share: f64| (share - 1.0).max(-share);
+        let outside = |share: &f64| (share - share.clamp(0.0, 1.0)).abs();
         let shares = spectra.reflectance.iter().zip(spectra.reflected.iter());
         let (excess, at) =
-            greatest(shares.zip(spectra.returned.iter()).map(|((&r, &reflected), &returned)| {
-                outside(r).max(outside(reflected)).max(-returned)
+            greatest(shares.zip(spectra.returned.iter()).map(|((r, reflected), returned)| {
+                worse(outside(r), worse(outside(reflected), outside(returned)))
             }));
-        self.see(Law::Bounds, subject, excess.max(0.0), self.nm(at), findings);
+        self.see(Law::Bounds, subject, excess, self.nm(at), findings);
     }
 
     /// The steepest sample, and for a node the steepest point between samples in closed form.
@@ -234,7 +234,10 @@ impl<'c> Inspector<'c> {
         let shares = spectra.reflected.iter().zip(spectra.albedo());
         let (error, at) = greatest(shares.zip(self.sampler.wavelengths_nm.iter()).map(
             |((reflected, albedo), &nm)| {
-                (reflected - mixture.reflectance(nm)).abs().max((albedo - mixture.albedo(nm)).abs())
+                worse(
+                    (reflected - mixture.reflectance(nm)).abs(),
+                    (albedo - mixture.albedo(nm)).abs(),
+                )
             },
         ));
         self.see(Law::Library, subject, error, self.nm(at), findings);

@@ -30,7 +30,7 @@ impl Subjects {
     }
 
     pub(super) fn len(&self) -> usize {
-        self.nodes + GRAYS + self.points
+        (self.nodes + GRAYS).saturating_add(self.points)
     }
 
     pub(super) fn pieces(&self) -> usize {
@@ -39,7 +39,7 @@ impl Subjects {
 
     /// The numbers of the subjects in one piece.
     pub(super) fn piece(&self, number: usize) -> Range<usize> {
-        number * PIECE..self.len().min((number + 1) * PIECE)
+        number * PIECE..self.len().min((number + 1).saturating_mul(PIECE))
     }
 
     pub(super) fn get(&self, index: usize) -> Subject {
@@ -62,8 +62,8 @@ impl Subjects {
 
 /// Random color number `index` of a seed, each component in 0..1.
 fn random_rgb(seed: u64, index: usize) -> LinearRgb {
-    let first = 3 * index as u64;
-    LinearRgb([1, 2, 3].map(|k| unit(split_mix(seed, first + k))))
+    let first = (index as u64).wrapping_mul(3);
+    LinearRgb([1, 2, 3].map(|k| unit(split_mix(seed, first.wrapping_add(k)))))
 }
 
 /// Number `step` of the `SplitMix64` sequence of a seed: any of them without those before it.
@@ -105,6 +105,14 @@ mod tests {
         assert_eq!(subjects.get(2000), Subject::Gray(LinearRgb([1.0; 3])));
         assert!(subjects.is_among_first_points(2001, 1));
         assert!(!subjects.is_among_first_points(2000, 1));
+    }
+
+    #[test]
+    fn any_number_of_points_is_a_number() {
+        let subjects = Subjects { nodes: 8, points: usize::MAX, seed: u64::MAX };
+        let last = subjects.piece(subjects.pieces() - 1);
+        assert_eq!(last.end, usize::MAX);
+        assert!(matches!(subjects.get(last.end - 1), Subject::Point(_)));
     }
 
     #[test]

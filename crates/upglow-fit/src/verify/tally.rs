@@ -84,6 +84,11 @@ impl Tally {
     }
 }
 
+/// The greater of two values; what is no number is greater than any.
+pub(super) fn worse(a: f64, b: f64) -> f64 {
+    if a > b || a.is_nan() { a } else { b }
+}
+
 /// The greatest of some values and its number; what is no number counts as infinite.
 pub(super) fn greatest(values: impl Iterator<Item = f64>) -> (f64, usize) {
     let mut best = (f64::NEG_INFINITY, 0);
@@ -124,6 +129,7 @@ mod tests {
         let mut tally = Tally::default();
         tally.see(finding(f64::NAN, 0), f64::MAX);
         assert_eq!(tally.violations, 1);
+        assert!(worse(f64::NAN, 1.0).is_nan() && worse(1.0, f64::NAN).is_nan());
         assert_eq!(greatest([1.0, f64::NAN, 3.0].into_iter()), (f64::INFINITY, 1));
     }
 }

@@ -1,0 +1,115 @@
+//! One color to be shown: what every way of searching for its material shares.
+
+use upglow::{AnalyticModel, DyeModel, Edge, Fluorescence, Model, Sigmoid};
+use upglow_color::{Goal, Metric};
+
+use crate::parabola::MIDDLE_NM;
+use crate::problem::{BELL_UNIT_NM, BellProblem, DyeProblem, PassiveProblem, Shape};
+use crate::solver::Residuals;
+use crate::starts::Start;
+use crate::{Fit, Fitter};
+
+/// A color, and the fitter that looks for its material.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Job<'f> {
+    pub(crate) fitter: &'f Fitter,
+    pub(crate) goal: Goal,
+}
+
+/// A color this near to a multiple of white, in XYZ, is gray: rounding only.
+const GRAY: f64 = 1e-9;
+
+impl Job<'_> {
+    /// A flat reflectance where the color is a gray no brighter than white.
+    pub(crate) fn gray(&self) -> Option<Fit> {
+        let white = self.fitter.model.colorimetry().white().0;
+        let color = self.goal.xyz().0;
+        let value = color[1] / white[1];
+        let off = (0..3).map(|k| (color[k] - value * white[k]).abs()).fold(0.0, f64::max);
+        let value = if (value - 1.0).abs() < GRAY { 1.0 } else { value };
+        if off > GRAY || !(0.0..=1.0).contains(&value) {
+            return None;
+        }
+        Some(self.judge(Sigmoid::flat(value).to_edge(MIDDLE_NM), Fluorescence::None))
+    }
+
+    /// The fit that a material is, with its color differences.
+    pub(crate) fn judge(&self, reflectance: Edge, fluorescence: Fluorescence) -> Fit {
+        let fluorescence = match fluorescence.concentration() {
+            c if c > 0.0 => fluorescence,
+            _ => Fluorescence::None,
+        };
+        let mut fit = Fit { reflectance, fluorescence, distance: 0.0, de2000: 0.0 };
+        let color = self.fitter.model.color(fit.material());
+        fit.distance = self.goal.distance(color);
+        fit.de2000 = self.goal.under(Metric::De2000).distance(color);
+        fit
+    }
+
+    /// The coordinates in which the slope limit is a bound.
+    pub(crate) fn edge_shape(&self) -> Shape {
+        Shape::Edge { slope_limit_per_nm: self.fitter.slope_limit_per_nm }
+    }
+
+    /// Looks for a material like `start` in the coordinates `shape`, by `solve`.
+    pub(crate) fn follow(&self, start: Start, shape: Shape, solve: &impl Solve) -> Fit {
+        let numbers = shape.numbers(start.reflectance);
+        let [s0, s1, s2] = numbers;
+        match (start.fluorescence, self.fitter.model.model()) {
+            (Fluorescence::Dyes { first, weight, concentration }, Model::Dyes(dyes)) => {
+                let problem = self.dye_problem(dyes, first, shape);
+                let x = solve.solve(&problem, [s0, s1, s2, concentration, weight]);
+                let [s0, s1, s2, concentration, weight] = x;
+                let fluorescence = Fluorescence::Dyes { first, weight, concentration };
+                self.judge(shape.edge([s0, s1, s2]), fluorescence)
+            }
+            (
+                Fluorescence::Analytic { emission_peak_nm, stokes_shift_nm, concentration },
+                Model::Analytic(bells),
+            ) => {
+                let [peak, shift] = [emission_peak_nm, stokes_shift_nm].map(|v| v / BELL_UNIT_NM);
+                let problem = self.bell_problem(bells, shape);
+                let x = solve.solve(&problem, [s0, s1, s2, concentration, peak, shift]);
+                let [s0, s1, s2, concentration, peak, shift] = x;
+                let fluorescence = Fluorescence::Analytic {
+                    emission_peak_nm: peak * BELL_UNIT_NM,
+                    stokes_shift_nm: shift * BELL_UNIT_NM,
+                    concentration,
+                };
+                self.judge(shape.edge([s0, s1, s2]), fluorescence)
+            }
+            _ => {
+                let x = solve.solve(&self.passive_problem(shape), numbers);
+                self.judge(shape.edge(x), Fluorescence::None)
+            }
+        }
+    }
+
+    pub(crate) fn passive_problem(&self, shape: Shape) -> PassiveProblem<'_> {
+        PassiveProblem { sums: &self.fitter.sums, goal: self.goal, shape }
+    }
+
+    fn dye_problem<'a>(&'a self, dyes: &'a DyeModel, first: usize, shape: Shape) -> DyeProblem<'a> {
+        let lanes = &self.fitter.dye_lanes;
+        DyeProblem {
+            sums: &self.fitter.sums,
+            goal: self.goal,
+            shape,
+            model: &self.fitter.model,
+            dyes,
+            first,
+            absorption: [&lanes[first], &lanes[dyes.partner(first)]],
+        }
+    }
+
+    fn bell_problem<'a>(&'a self, bells: &'a AnalyticModel, shape: Shape) -> BellProblem<'a> {
+        let model = &self.fitter.model;
+        BellProblem { sums: &self.fitter.sums, goal: self.goal, shape, model, bells }
+    }
+}
+
+/// A way to solve any of the problems of a color.
+pub(crate) trait Solve {
+    /// The unknowns that it finds from `start`.
+    fn solve<const N: usize>(&self, problem: &impl Residuals<3, N>, start: [f64; N]) -> [f64; N];
+}

@@ -1,0 +1,62 @@
+//! The least fluorescence that still shows a color.
+
+use crate::job::Solve;
+use crate::problem::{CONCENTRATION, LeastProblem};
+use crate::solver::{Residuals, SolverOptions, solve};
+
+/// What a concentration of 1 counts in the search for the least one, in units of the metric.
+/// Larger leaves the color earlier, smaller takes more rounds.
+const CONCENTRATION_WEIGHT: f64 = 3.0;
+/// Rounds of that search.
+const LEAST_ROUNDS: usize = 12;
+/// Evaluations of its first round and of each later one.
+const LEAST_STEPS: [usize; 2] = [40, 8];
+/// It ends when a round is this near to the color and changes the concentration by less than this.
+const LEAST_SETTLED: (f64, f64) = (3e-3, 2e-3);
+
+/// Keeps the color and lowers the concentration.
+///
+/// The residuals' squares plus the weighted concentration's, with multipliers that take the rest
+/// of the residuals away round by round; then the color alone.
+///
+/// # Source
+///
+/// The method of multipliers: [hestenes].
+pub(crate) struct LeastConcentration;
+
+impl Solve for LeastConcentration {
+    fn solve<const N: usize>(&self, problem: &impl Residuals<3, N>, start: [f64; N]) -> [f64; N] {
+        let mut x = start;
+        let mut multipliers = [0.0; 3];
+        for round in 0..LEAST_ROUNDS {
+            let before = x[CONCENTRATION];
+            x = one_round(problem, x, multipliers, round == 0);
+            let (residuals, _) = problem.eval(&x);
+            (0..3).for_each(|i| multipliers[i] += residuals[i]);
+            let norm = residuals.iter().map(|r| r * r).sum::<f64>().sqrt();
+            let (near, still) = LEAST_SETTLED;
+            if round > 0 && norm < near && (x[CONCENTRATION] - before).abs() < still {
+                break;
+            }
+        }
+        let polish = SolverOptions { damping: 1e-6, step_limit: 20, ..SolverOptions::default() };
+        solve(problem, x, &polish).x
+    }
+}
+
+fn one_round<const N: usize>(
+    problem: &impl Residuals<3, N>,
+    x: [f64; N],
+    multipliers: [f64; 3],
+    is_first: bool,
+) -> [f64; N] {
+    let least = LeastProblem { problem, multipliers, concentration_weight: CONCENTRATION_WEIGHT };
+    let [first_steps, later_steps] = LEAST_STEPS;
+    let options = SolverOptions {
+        norm_reached: 0.0,
+        stationary_share: 1e-2,
+        step_limit: if is_first { first_steps } else { later_steps },
+        damping: if is_first { 1e-2 } else { 1e-4 },
+    };
+    solve(&least, x, &options).x
+}
