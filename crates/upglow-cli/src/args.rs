@@ -32,7 +32,6 @@ pub(crate) enum Command {
     /// Recompute everything from a cube's numbers; exit 1 if a physical law is broken
     Verify(VerifyArgs),
     /// Show the material of one color
-    #[command(allow_negative_numbers = true)]
     Color(ColorArgs),
     /// Write every node as a line of a CSV file
     Export(ExportArgs),
@@ -127,13 +126,13 @@ pub(crate) struct ColorArgs {
     /// Cube made by `upglow build`
     pub(crate) file: PathBuf,
     /// Linear red in the cube's RGB space, 0 to 1; with --direct to 10
-    #[arg(value_name = "R")]
+    #[arg(value_name = "R", allow_hyphen_values = true)]
     pub(crate) red: String,
     /// Linear green
-    #[arg(value_name = "G")]
+    #[arg(value_name = "G", allow_hyphen_values = true)]
     pub(crate) green: String,
     /// Linear blue
-    #[arg(value_name = "B")]
+    #[arg(value_name = "B", allow_hyphen_values = true)]
     pub(crate) blue: String,
     /// What stands between the nodes: blend, none, coefficients, features or hybrid
     /// [default: blend]

@@ -35,10 +35,12 @@ impl BuildPlan {
             adaptation: args.adapt,
         };
         let model = model(args)?;
+        let defaults = FitOptions::default();
         let options = FitOptions {
             metric: args.metric,
             slope_max_per_nm: args.slope_max_per_nm.0,
-            sweeps: args.sweeps.unwrap_or(FitOptions::default().sweeps),
+            sweeps: args.sweeps.unwrap_or(defaults.sweeps),
+            ..defaults
         };
         Fitter::new(&contract, &model, options)
             .map_err(|error| Failure::option("--slope-max-per-nm", error))?;

@@ -27,7 +27,9 @@ impl Bar {
         } else {
             ProgressDrawTarget::stderr_with_hz(REDRAWS_PER_S)
         };
-        let bar = ProgressBar::with_draw_target(Some(0), target).with_style(style());
+        let bar = ProgressBar::with_draw_target(Some(1), target)
+            .with_style(style())
+            .with_message("starting");
         let stopped = Arc::new(AtomicBool::new(false));
         let flag = Arc::clone(&stopped);
         // Without a handler Ctrl-C ends the program at once; files appear whole or not at all then too.
@@ -55,12 +57,15 @@ impl Watch for Bar {
             let mut current = self.stage.lock().unwrap_or_else(PoisonError::into_inner);
             if *current != stage {
                 *current = stage;
-                self.bar.set_length(total as u64);
-                self.bar.set_message(stage);
                 self.bar.reset();
+                self.bar.set_message(stage);
+                self.bar.set_length(total as u64);
             }
         }
-        self.bar.set_position(done as u64);
+        // Threads report out of order; the bar goes one way.
+        if done as u64 > self.bar.position() {
+            self.bar.set_position(done as u64);
+        }
     }
 
     fn stopped(&self) -> bool {

@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
-use upglow::{Cube, CubeError, FitRecord, Fluorescence, Model, Node};
+use upglow::{Cube, CubeError, FitRecord, Model, Node};
 use upglow_color::{Contract, LinearRgb, Metric};
 
 use crate::fitter::EXACT;
@@ -45,12 +45,14 @@ pub fn build_cube(
     let mut fits = each_node(lattice, "fitting", watch, |index| {
         fitter.fit(lattice.rgb(index)).expect("nodes are in 0..=1")
     })?;
+    let mut moved = vec![true; lattice.len()];
     for _ in 0..options.sweeps {
         let before = fits;
         fits = each_node(lattice, "asking neighbors", watch, |index| {
-            sweep_node(&fitter, lattice, &before, index)
+            sweep_node(&fitter, lattice, &before, &moved, index)
         })?;
-        if fits == before {
+        moved = fits.iter().zip(&before).map(|(now, then)| now != then).collect();
+        if !moved.contains(&true) {
             break;
         }
     }
@@ -133,41 +135,22 @@ fn each_node<T: Send + Copy>(
 }
 
 /// One node in a sweep: what it had, or better from its neighbors.
-fn sweep_node(fitter: &Fitter, lattice: Lattice, before: &[Fit], index: usize) -> Fit {
+///
+/// Where neither the node nor a neighbor moved in the last sweep, nothing new can come of it.
+fn sweep_node(
+    fitter: &Fitter,
+    lattice: Lattice,
+    before: &[Fit],
+    moved: &[bool],
+    index: usize,
+) -> Fit {
     let known = before[index];
-    if known.de2000 <= EXACT {
+    let is_settled = !moved[index] && lattice.neighbors(index).all(|i| !moved[i]);
+    if known.de2000 <= EXACT || is_settled {
         return known;
     }
-    let mut neighbors: Vec<Fit> = Vec::with_capacity(6);
-    for neighbor in lattice.neighbors(index).map(|i| before[i]) {
-        if !is_alike(&neighbor, &known) && !neighbors.iter().any(|n| is_alike(n, &neighbor)) {
-            neighbors.push(neighbor);
-        }
-    }
-    let color = fitter.model().colorimetry().xyz_from_rgb(lattice.rgb(index));
-    fitter.job(color).improve(known, &neighbors)
-}
-
-/// Whether two materials lead to the same place: nothing is gained by following both.
-fn is_alike(a: &Fit, b: &Fit) -> bool {
-    /// Weights nearer than this end in the same mixture; smaller follows more and gains nothing.
-    const WEIGHTS: f64 = 0.3;
-    /// Emission peaks and Stokes shifts nearer than this, nm.
-    const BELLS_NM: f64 = 20.0;
-    let same_shape = (a.reflectance.level > 0.0) == (b.reflectance.level > 0.0);
-    same_shape
-        && match (a.fluorescence, b.fluorescence) {
-            (Fluorescence::None, Fluorescence::None) => true,
-            (
-                Fluorescence::Dyes { first: i, weight: v, .. },
-                Fluorescence::Dyes { first: j, weight: w, .. },
-            ) => i == j && (v - w).abs() < WEIGHTS,
-            (
-                Fluorescence::Analytic { emission_peak_nm: p, stokes_shift_nm: s, .. },
-                Fluorescence::Analytic { emission_peak_nm: q, stokes_shift_nm: t, .. },
-            ) => (p - q).abs() < BELLS_NM && (s - t).abs() < BELLS_NM,
-            _ => false,
-        }
+    let neighbors: Vec<Fit> = lattice.neighbors(index).map(|i| before[i]).collect();
+    fitter.improve(lattice.rgb(index), known, &neighbors)
 }
 
 /// A fit as the cube keeps it, with the color difference of what is kept.

@@ -6,7 +6,7 @@ use upglow_color::{Contract, Grid, LinearRgb, Xyz};
 use crate::job::Job;
 use crate::starts::StartTable;
 use crate::sums::{Lanes, Sums};
-use crate::{FitOptions, FitOptionsError};
+use crate::{FitOptions, FitOptionsError, Method};
 
 /// Everything that fits under one contract, with one model, share.
 #[derive(Clone, Debug)]
@@ -106,10 +106,22 @@ impl Fitter {
             }
         }
         let job = self.job(self.model.colorimetry().xyz_from_rgb(rgb));
-        Ok(job.gray().unwrap_or_else(|| job.search()))
+        Ok(job.gray().unwrap_or_else(|| match self.options.method {
+            Method::Search => job.search(),
+            Method::Seed(parameters) => job.seed_first(parameters),
+        }))
     }
 
-    pub(crate) fn job(&self, color: Xyz) -> Job<'_> {
+    /// The best of `known` and of what the materials of neighbors lead to.
+    pub(crate) fn improve(&self, rgb: LinearRgb, known: Fit, neighbors: &[Fit]) -> Fit {
+        let job = self.job(self.model.colorimetry().xyz_from_rgb(rgb));
+        match self.options.method {
+            Method::Search => job.improve(known, neighbors),
+            Method::Seed(parameters) => job.seed_again(parameters, known, neighbors),
+        }
+    }
+
+    fn job(&self, color: Xyz) -> Job<'_> {
         Job { fitter: self, goal: self.options.metric.goal(self.model.colorimetry(), color) }
     }
 }

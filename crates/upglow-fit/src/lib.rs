@@ -31,6 +31,7 @@ mod parabola;
 mod problem;
 mod progress;
 mod search;
+mod seed;
 mod solver;
 mod standing;
 mod starts;
@@ -40,7 +41,7 @@ mod verify;
 
 pub use build::{BuildError, build_cube};
 pub use fitter::{ColorError, Fit, Fitter};
-pub use options::{FitOptions, FitOptionsError};
+pub use options::{FitOptions, FitOptionsError, Method, Parameters, UnknownMethod};
 pub use progress::{Progress, Unwatched, Watch};
 pub use solver::{Jacobian, Residuals, SolverOptions, Stop, Summary, jacobian_error, solve};
 pub use standing::Standing;

@@ -1,5 +1,8 @@
 //! What a fit is asked for.
 
+use std::fmt;
+use std::str::FromStr;
+
 use upglow_color::Metric;
 
 /// The choices in a fit, apart from contract and model.
@@ -12,11 +15,72 @@ pub struct FitOptions {
     pub slope_max_per_nm: Option<f64>,
     /// How often each node that missed its color tries its neighbors' materials. Default: 2.
     pub sweeps: u32,
+    /// How materials are searched for. Default: our own search.
+    pub method: Method,
+}
+
+/// How materials are searched for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Method {
+    /// Reflectance alone where that is enough; else the best of a table of starts, with the least
+    /// fluorescence that shows the color.
+    #[default]
+    Search,
+    /// The seed paper's: from gray, then from the neighbors' materials, through all pairs of dyes.
+    ///
+    /// # Source
+    ///
+    /// [konig], sections 4 and 5; [jung] for the sweeps.
+    Seed(Parameters),
+}
+
+/// What the seed's solver moves for a reflectance.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Parameters {
+    /// c0, c1, c2; the slope limit is a penalty.
+    #[default]
+    Coefficients,
+    /// Shift, width, slope; the slope limit is a bound.
+    Features,
+}
+
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Search => "search",
+            Self::Seed(Parameters::Coefficients) => "seed",
+            Self::Seed(Parameters::Features) => "seed-features",
+        })
+    }
+}
+
+/// A word that names no method.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("unknown method {found:?}, expected search, seed or seed-features")]
+pub struct UnknownMethod {
+    /// The word given.
+    pub found: String,
+}
+
+impl FromStr for Method {
+    type Err = UnknownMethod;
+
+    fn from_str(name: &str) -> Result<Self, Self::Err> {
+        [Self::Search, Self::Seed(Parameters::Coefficients), Self::Seed(Parameters::Features)]
+            .into_iter()
+            .find(|method| method.to_string() == name)
+            .ok_or_else(|| UnknownMethod { found: name.into() })
+    }
 }
 
 impl Default for FitOptions {
     fn default() -> Self {
-        Self { metric: Metric::De2000, slope_max_per_nm: Some(0.01), sweeps: 2 }
+        Self {
+            metric: Metric::De2000,
+            slope_max_per_nm: Some(0.01),
+            sweeps: 2,
+            method: Method::Search,
+        }
     }
 }
 

@@ -245,8 +245,8 @@ impl<const N: usize, P: Residuals<3, N>> Residuals<4, N> for LeastProblem<'_, P>
 /// A problem in free coefficients whose fourth residual is how far the reflectance is above the
 /// slope limit.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct LimitedProblem<P> {
-    pub(crate) problem: P,
+pub(crate) struct LimitedProblem<'p, P> {
+    pub(crate) problem: &'p P,
     pub(crate) slope_limit_per_nm: f64,
 }
 
@@ -254,7 +254,7 @@ pub(crate) struct LimitedProblem<P> {
 /// along the limit, smaller leaves it too far above.
 const STEEPNESS_WEIGHT: f64 = 100.0;
 
-impl<const N: usize, P: Residuals<3, N>> Residuals<4, N> for LimitedProblem<P> {
+impl<const N: usize, P: Residuals<3, N>> Residuals<4, N> for LimitedProblem<'_, P> {
     fn eval(&self, x: &[f64; N]) -> ([f64; 4], Jacobian<4, N>) {
         let ([r0, r1, r2], [j0, j1, j2]) = self.problem.eval(x);
         let (steepness, by_parabola) = steepness([x[0], x[1], x[2]], self.slope_limit_per_nm);

@@ -61,8 +61,13 @@ impl Job<'_> {
 
     /// The best of `known` and of what the nearest of some materials lead to.
     pub(crate) fn improve(&self, known: Fit, neighbors: &[Fit]) -> Fit {
-        let mut near: Vec<Fit> =
-            neighbors.iter().map(|n| self.judge(n.reflectance, n.fluorescence)).collect();
+        let mut near: Vec<Fit> = Vec::with_capacity(neighbors.len());
+        for neighbor in neighbors {
+            let is_new = |other: &Fit| !is_alike(other, neighbor);
+            if is_new(&known) && near.iter().all(is_new) {
+                near.push(self.judge(neighbor.reflectance, neighbor.fluorescence));
+            }
+        }
         near.sort_by(|a, b| a.distance.total_cmp(&b.distance));
         let mut best = known;
         for neighbor in near.into_iter().take(NEIGHBORS_FOLLOWED) {
@@ -118,6 +123,28 @@ impl Job<'_> {
 /// The nearer of two fits; the first where they are equally near.
 fn nearer(known: Option<Fit>, found: Fit) -> Fit {
     known.filter(|known| known.distance <= found.distance).unwrap_or(found)
+}
+
+/// Whether two materials lead to the same place: nothing is gained by following both.
+fn is_alike(a: &Fit, b: &Fit) -> bool {
+    /// Weights nearer than this end in the same mixture; smaller follows more and gains nothing.
+    const WEIGHTS: f64 = 0.3;
+    /// Emission peaks and Stokes shifts nearer than this, nm.
+    const BELLS_NM: f64 = 20.0;
+    let same_shape = (a.reflectance.level > 0.0) == (b.reflectance.level > 0.0);
+    same_shape
+        && match (a.fluorescence, b.fluorescence) {
+            (Fluorescence::None, Fluorescence::None) => true,
+            (
+                Fluorescence::Dyes { first: i, weight: v, .. },
+                Fluorescence::Dyes { first: j, weight: w, .. },
+            ) => i == j && (v - w).abs() < WEIGHTS,
+            (
+                Fluorescence::Analytic { emission_peak_nm: p, stokes_shift_nm: s, .. },
+                Fluorescence::Analytic { emission_peak_nm: q, stokes_shift_nm: t, .. },
+            ) => (p - q).abs() < BELLS_NM && (s - t).abs() < BELLS_NM,
+            _ => false,
+        }
 }
 
 /// A material whose weight is at its end, as a start for the other pair of that dye; `None` for

@@ -49,6 +49,7 @@ fn material<'c>(plan: &ColorPlan, cube: &'c Cube) -> Result<Mixture<'c>, Failure
                 metric: record.metric.parse::<Metric>().map_err(|e| refused(e.to_string()))?,
                 slope_max_per_nm: record.slope_max_per_nm,
                 sweeps: record.sweeps,
+                ..FitOptions::default()
             };
             let fitter = Fitter::new(cube.contract(), cube.model(), options)
                 .map_err(|error| refused(error.to_string()))?;

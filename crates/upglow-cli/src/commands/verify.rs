@@ -32,6 +32,9 @@ struct CheckReport {
     checked: usize,
     violations: usize,
     worst: Option<OffenderReport>,
+    /// What is said where the law is broken.
+    #[serde(skip)]
+    fault: Option<String>,
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -94,6 +97,7 @@ impl CheckReport {
             checked: check.checked,
             violations: check.violations,
             worst: check.worst.as_ref().map(OffenderReport::new),
+            fault: (check.verdict == Verdict::Broken).then(|| broken(check)),
         }
     }
 
@@ -135,11 +139,14 @@ impl Report for VerificationReport {
                 check.about.into(),
             ]);
         }
-        let held = if self.holds { "Every law holds" } else { "A law is broken" };
         let Self { nodes, points, interpolation, seed, .. } = self;
-        format!(
-            "{table}\n{held}: {nodes} nodes and {points} colors between them, interpolation {interpolation}, seed {seed}.\n"
-        )
+        let tried = format!(
+            "{nodes} nodes and {points} colors between them, interpolation {interpolation}, seed {seed}"
+        );
+        let faults = self.checks.iter().filter_map(|check| check.fault.as_ref());
+        let faults: String = faults.map(|fault| format!("Broken: {fault}.\n")).collect();
+        let verdict = if self.holds { "Every law holds for" } else { "Checked" };
+        format!("{table}\n{faults}{verdict} {tried}.\n")
     }
 }
 

@@ -29,13 +29,13 @@ const FONT: &str = "'DejaVu Sans', Verdana, Arial, sans-serif";
 const INK: &str = "#222222";
 const FAINT: &str = "#dddddd";
 
-/// A curve's name, color, dashes and samples. Colors keep apart for color-blind readers, dashes in
+/// A curve's name, color, dashes and points. Colors keep apart for color-blind readers, dashes in
 /// print without color.
-struct Stroke<'c> {
+struct Stroke {
     name: &'static str,
     color: &'static str,
     dashes: &'static str,
-    curve: &'c [f64],
+    points: String,
 }
 
 /// The figure as the text of an SVG file.
@@ -55,9 +55,7 @@ pub(crate) fn draw(figure: &Figure<'_>) -> String {
             svg,
             "<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"2.4\" \
              stroke-linejoin=\"round\" stroke-dasharray=\"{}\"/>",
-            points(figure.curves.lifted(stroke.curve)),
-            stroke.color,
-            stroke.dashes
+            stroke.points, stroke.color, stroke.dashes
         );
     }
     svg += &legend(&strokes);
@@ -65,12 +63,15 @@ pub(crate) fn draw(figure: &Figure<'_>) -> String {
     svg + "</svg>\n"
 }
 
-fn strokes(curves: &Curves) -> Vec<Stroke<'_>> {
-    let stroke = |name, color, dashes, curve| Stroke { name, color, dashes, curve };
-    let mut strokes = vec![stroke("reflectance (1 − c·a)·r", INK, "none", &curves.reflectance[..])];
+fn strokes(curves: &Curves) -> Vec<Stroke> {
+    let stroke = |name, color, dashes, points| Stroke { name, color, dashes, points };
+    let reflectance = points(curves.shown(&curves.reflectance));
+    let mut strokes = vec![stroke("reflectance (1 − c·a)·r", INK, "none", reflectance)];
     if curves.is_fluorescent() {
-        strokes.push(stroke("absorption c·a", "#0072b2", "9 4", &curves.absorption[..]));
-        strokes.push(stroke("emission / its peak", "#d55e00", "2.5 3", &curves.emission[..]));
+        let absorption = points(curves.lifted(&curves.absorption));
+        let emission = points(curves.lifted(&curves.emission));
+        strokes.push(stroke("absorption c·a", "#0072b2", "9 4", absorption));
+        strokes.push(stroke("emission / its peak", "#d55e00", "2.5 3", emission));
     }
     strokes
 }
@@ -134,7 +135,7 @@ fn axes() -> String {
     svg
 }
 
-fn legend(strokes: &[Stroke<'_>]) -> String {
+fn legend(strokes: &[Stroke]) -> String {
     let mut svg = String::new();
     for (row, stroke) in (0_u8..).zip(strokes) {
         let y = TOP + 12.0 + 24.0 * f64::from(row);

@@ -14,6 +14,9 @@ const LABELS_NM: [u32; 5] = [300, 400, 500, 600, 700];
 const BITS: [[u32; 2]; 4] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]];
 const EMPTY_PATTERN: u32 = 0x2800;
 
+const REFLECTANCE: &str = "reflectance";
+const EMISSION: &str = "emission";
+
 const RESET: &str = "\u{1b}[0m";
 
 /// One curve and how it is drawn.
@@ -23,6 +26,8 @@ struct Stroke<'c> {
     dashes: (usize, usize),
     /// Select Graphic Rendition code of its color.
     ansi: &'static str,
+    /// Whether the area below is dotted.
+    filled: bool,
     points: Vec<(f64, f64)>,
     sample: &'c str,
 }
@@ -32,14 +37,19 @@ pub(crate) fn draw(curves: &Curves, colored: bool) -> String {
     let stroke = |name, dashes, ansi, sample, curve: &[f64]| Stroke {
         name,
         dashes,
+        filled: name == EMISSION,
         ansi,
         sample,
-        points: curves.shown(curve).collect(),
+        points: if name == REFLECTANCE {
+            curves.shown(curve).collect()
+        } else {
+            curves.lifted(curve).collect()
+        },
     };
-    let mut strokes = vec![stroke("reflectance", (1, 0), "\u{1b}[1m", "⠒⠒⠒", &curves.reflectance)];
+    let mut strokes = vec![stroke(REFLECTANCE, (1, 0), "\u{1b}[1m", "⠒⠒⠒", &curves.reflectance)];
     if curves.is_fluorescent() {
-        strokes.push(stroke("absorption", (1, 2), "\u{1b}[34m", "⠂⠐ ", &curves.absorption));
-        strokes.push(stroke("emission", (5, 4), "\u{1b}[33m", "⠒⠂⠐", &curves.emission));
+        strokes.push(stroke("absorption", (2, 2), "\u{1b}[34m", "⠒ ⠒", &curves.absorption));
+        strokes.push(stroke(EMISSION, (1, 0), "\u{1b}[33m", "⠴⠶⠦", &curves.emission));
     }
     let mut canvas = Canvas::default();
     for (number, stroke) in strokes.iter().enumerate() {
@@ -57,7 +67,8 @@ pub(crate) fn draw(curves: &Curves, colored: bool) -> String {
                 None => " ".into(),
             })
             .collect();
-        text += &format!("{} {}\n", level_label(row), line.trim_end());
+        text += format!("{} {line}", level_label(row)).trim_end();
+        text.push('\n');
     }
     text += &axis();
     let legend = strokes.iter().map(|s| format!("{} {}", paint(s.sample, s), s.name));
@@ -134,6 +145,9 @@ impl Canvas {
                 }
                 length += 1;
             }
+            if stroke.filled && x % 4 == 0 {
+                (y..DOTS_DOWN).filter(|y| y % 4 == 2).for_each(|y| self.set(x, y, number));
+            }
             previous = Some(y);
         }
     }
@@ -152,8 +166,9 @@ impl Canvas {
 /// The curve's value at the wavelength of a column of dots.
 fn value_at(points: &[(f64, f64)], x: usize) -> Option<f64> {
     let nm = FIRST_NM + (LAST_NM - FIRST_NM) * x as f64 / (DOTS_ACROSS - 1) as f64;
-    let above = points.partition_point(|(at, _)| *at < nm).min(points.len().checked_sub(1)?);
-    Some(points[above].1)
+    let above = points.partition_point(|(at, _)| *at < nm);
+    let begun = above > 0 || points.first().is_some_and(|(at, _)| *at <= nm);
+    points.get(above).filter(|_| begun).map(|(_, value)| *value)
 }
 
 #[cfg(test)]

@@ -1,0 +1,292 @@
+//! Bad input gets one line, what was found and what was expected, and leaves nothing.
+
+mod support;
+
+use std::process::{Command, Stdio};
+
+use support::{Folder, curves, dye, one_line, program};
+
+fn folder_with_cube() -> Folder {
+    let folder = Folder::new();
+    folder.done("build --resolution 3 -o cube");
+    folder
+}
+
+#[test]
+fn colors_that_are_none() {
+    let folder = folder_with_cube();
+    let cases = [
+        ("NaN 0 0", "R: NaN, expected 0 to 1"),
+        ("0 inf 0", "G: inf, expected 0 to 1"),
+        ("0 0 -0.1", "B: -0.1, expected 0 to 1"),
+        ("-1e-3 0 0", "R: -1e-3, expected 0 to 1"),
+        ("-inf 0 0", "R: -inf, expected 0 to 1"),
+        ("-0.5 --direct 0 0 -q", "R: -0.5, expected 0 to 10"),
+        ("red 0 0", "R: \"red\", expected a number from 0 to 1"),
+        ("0 11 0", "G: 11, expected 0 to 1"),
+        ("0 11 0 --direct", "G: 11, expected 0 to 10"),
+        ("0 nan 0 --direct", "G: nan, expected 0 to 10"),
+        (
+            "1.58 0.34 0.05",
+            "R: 1.58 is beyond the cube, expected 0 to 1, or --direct, which fits colors up to 10",
+        ),
+    ];
+    for (rgb, line) in cases {
+        assert_eq!(folder.refused(1, &format!("color cube {rgb}")), line);
+    }
+}
+
+#[test]
+fn files_that_are_no_cubes() {
+    let folder = folder_with_cube();
+    folder.write("text", "red green blue");
+    folder.write("empty", "");
+    std::fs::create_dir(folder.path().join("folder")).unwrap();
+    let cases = [
+        ("absent", "absent: no such file or folder, expected a cube made by `upglow build`"),
+        ("folder", "folder: a folder, expected a cube made by `upglow build`"),
+        ("text", "text: not a whole safetensors file"),
+        ("empty", "empty: not a whole safetensors file"),
+    ];
+    for (file, line) in cases {
+        for command in ["inspect FILE", "verify FILE", "color FILE 0 0 0", "export FILE nodes.csv"]
+        {
+            let found = folder.refused(1, &command.replace("FILE", file));
+            assert!(found.starts_with(line) && found.contains("expected"), "{found}");
+        }
+    }
+}
+
+#[test]
+fn a_cube_cut_short_or_altered() {
+    let folder = folder_with_cube();
+    let whole = folder.read("cube");
+    for share in 0..20 {
+        folder.write("cut", &whole[..whole.len() * share / 20]);
+        assert!(folder.refused(1, "inspect cut").starts_with("cut: "));
+        let mut altered = whole.clone();
+        altered[whole.len() * share / 20] ^= 0x10;
+        folder.write("altered", altered);
+        assert!(folder.refused(1, "color altered 0 0 0").starts_with("altered: "));
+    }
+    let mut altered = whole.clone();
+    altered[whole.len() - 5000] ^= 1;
+    folder.write("altered", altered);
+    let line = folder.refused(1, "inspect altered");
+    assert!(line.contains("checksum") && line.contains("expected"), "{line}");
+}
+
+#[test]
+fn dyes_that_are_none() {
+    let good = dye(500);
+    let line_of = |nm: u32| good.lines().find(|line| line.starts_with(&format!("{nm},"))).unwrap();
+    let without = |nm: u32| good.replace(&format!("{}\n", line_of(nm)), "");
+    let negative = good.replace(line_of(600), "600,-0.5,0");
+    let swapped = good.replace(line_of(600), "590,0,0");
+    let worded = good.replace(line_of(600), "600,none,0");
+    let cases = [
+        (without(600), "ring/bad.csv: line 62: 605 nm after 595 nm leaves a gap, expected steps"),
+        (swapped, "ring/bad.csv: line 62: 590 nm after 595 nm, expected ascending wavelengths"),
+        (negative, "ring/bad.csv: line 62: -0.5 in column \"absorption\", expected a value of 0"),
+        (worded, "ring/bad.csv: line 62: \"none\" in column \"absorption\", expected a finite"),
+        ("a,b\n1,2\n".into(), "ring/bad.csv: header \"a,b\", expected \"wavelength_nm,absorption"),
+    ];
+    for (text, line) in cases {
+        let folder = Folder::new();
+        folder.write("ring/good.csv", &good);
+        folder.write("ring/bad.csv", text);
+        let found = folder.refused(1, "build --resolution 256 --dyes ring -o cube");
+        assert!(found.starts_with(line), "{found}");
+    }
+    let folder = Folder::new();
+    folder.write("ring/readme.txt", "nothing");
+    let line = folder.refused(1, "build --dyes ring -o cube");
+    assert!(line.starts_with("ring: 0 dyes, expected"), "{line}");
+    let line = folder.refused(1, "build --dyes no/ring -o cube");
+    assert_eq!(line, "no/ring: no such file or folder, expected a folder of CSV files");
+}
+
+#[test]
+fn lights_that_are_none() {
+    let folder = Folder::new();
+    folder.write("dark.csv", curves("power", |_| "0".into()));
+    let line = folder.refused(1, "build --illuminant dark.csv -o cube");
+    assert!(line.starts_with("dark.csv: no power"), "{line}");
+    let line = folder.refused(1, "build --illuminant absent.csv -o cube");
+    assert!(line.starts_with("absent.csv: no such file"), "{line}");
+}
+
+#[test]
+fn command_lines_that_do_not_fit() {
+    let folder = folder_with_cube();
+    let cases = [
+        ("build --space rec709 -o x", "--space: unknown RGB space \"rec709\", expected acescg"),
+        ("build --space 1,2,3 -o x", "--space: unknown RGB space"),
+        ("build --illuminant F11 -o x", "--illuminant: unknown illuminant \"F11\", expected D65"),
+        ("build --dyes none -o x", "--dyes: unknown dye set \"none\", expected seed8"),
+        ("build --metric lab -o x", "--metric: unknown metric \"lab\", expected de2000"),
+        ("build --model paint -o x", "--model: unknown model \"paint\", expected dyes"),
+        ("build --adapt cat02 -o x", "--adapt: unknown adaptation \"cat02\", expected bradford"),
+        ("build --resolution 1 -o x", "--resolution: 1, expected a whole number from 2 to 256"),
+        ("build --resolution x -o x", "--resolution: \"x\", expected a whole number from 2 to 256"),
+        ("build --threads 0 -o x", "--threads: \"0\", expected a whole number from 1 to 1024"),
+        ("build --sweeps -1 -o x", "unexpected argument '-1' found"),
+        (
+            "build --slope-max-per-nm 0 -o x",
+            "--slope-max-per-nm: slope limit 0/nm, expected 0.0001",
+        ),
+        ("build --slope-max-per-nm NaN -o x", "--slope-max-per-nm: slope limit NaN/nm, expected"),
+        ("build --slope-max-per-nm x -o x", "--slope-max-per-nm: \"x\", expected a number"),
+        ("build --quantum-yield 1.5 -o x", "--quantum-yield: quantum yield 1.5, expected 0 to 1"),
+        ("build --quantum-yield x -o x", "--quantum-yield: unknown quantum yield \"x\", expected"),
+        ("build --optical-density 0 -o x", "--optical-density: optical density 0, expected > 0"),
+        (
+            "build --model analytic --emission-fwhm-nm 5 -o x",
+            "--emission-fwhm-nm: width 5 nm, expected 15 to 80 nm",
+        ),
+        (
+            "build --model analytic --absorption-fwhm-nm 5 -o x",
+            "--absorption-fwhm-nm: width 5 nm, expected 15 to 80 nm",
+        ),
+        (
+            "build --model reflectance --dyes seed8 -o x",
+            "--dyes: given with --model reflectance, expected --model dyes",
+        ),
+        (
+            "build --model analytic --optical-density 4 -o x",
+            "--optical-density: given with --model analytic, expected --model dyes",
+        ),
+        (
+            "build --model reflectance --accounting photon -o x",
+            "--accounting: given with --model reflectance, expected --model dyes or analytic",
+        ),
+        (
+            "build --emission-fwhm-nm 30 -o x",
+            "--emission-fwhm-nm: given with --model dyes, expected --model analytic",
+        ),
+        (
+            "build --model analytic --quantum-yield measured -o x",
+            "--quantum-yield: measured with --model analytic, expected a number from 0 to 1",
+        ),
+        ("build", "the following required arguments were not provided: --output <FILE>"),
+        ("build --resolutoin 4 -o x", "unexpected argument '--resolutoin' found; tip: "),
+        ("paint", "unrecognized subcommand 'paint'"),
+        ("color cube 0 0", "the following required arguments were not provided: <B>"),
+        (
+            "color cube 0 0 0 --direct --interpolation none",
+            "the argument '--direct' cannot be used",
+        ),
+        ("verify cube --interpolation cubic", "--interpolation: unknown interpolation \"cubic\""),
+        ("verify cube --points many", "--points: \"many\", expected a whole number of 0 or more"),
+    ];
+    for (words, line) in cases {
+        let found = folder.refused(2, words);
+        assert!(found.starts_with(line), "{words}: {found}");
+    }
+}
+
+#[test]
+fn outputs_that_cannot_be_written_are_refused_before_the_work() {
+    let folder = folder_with_cube();
+    std::fs::create_dir(folder.path().join("folder")).unwrap();
+    let cases = [
+        ("folder", "folder: a folder, expected a file to write"),
+        ("no/cube", "no/cube: no folder no, expected an existing one"),
+        ("cube/cube", "cube/cube: no folder cube, expected an existing one"),
+        #[cfg(unix)]
+        ("/dev/full", "/dev/full: a device, pipe or socket, expected a file to write"),
+        #[cfg(unix)]
+        ("/dev/null", "/dev/null: a device, pipe or socket, expected a file to write"),
+        #[cfg(target_os = "linux")]
+        ("/proc/cube", "/proc/cube: "),
+    ];
+    for (path, line) in cases {
+        // Minutes of work, were it to start.
+        let found = folder.refused(1, &format!("build --resolution 256 -o {path}"));
+        assert!(found.starts_with(line), "{found}");
+        let found = folder.refused(1, &format!("export cube {path}"));
+        assert!(found.starts_with(line), "{found}");
+        let found = folder.refused(1, &format!("color cube 0 0 0 --plot {path}"));
+        assert!(found.starts_with(line), "{found}");
+    }
+}
+
+#[test]
+fn a_cube_is_not_replaced_by_what_is_made_of_it() {
+    let folder = folder_with_cube();
+    let before = folder.read("cube");
+    let line = folder.refused(1, "export cube ./cube");
+    assert_eq!(line, "./cube: the cube itself, expected another file to write");
+    folder.refused(1, "color cube 0 0 0 --plot cube");
+    assert_eq!(folder.read("cube"), before);
+}
+
+/// Runs words of the program in a shell, after `preparation`; gives status and standard error.
+#[cfg(unix)]
+#[expect(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
+fn in_shell(folder: &Folder, preparation: &str, words: &str) -> (i32, String) {
+    let script = format!("{preparation} exec \"$0\" {words}");
+    let output = Command::new("sh")
+        .args(["-c", &script])
+        .arg(program())
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    (output.status.code().unwrap_or(-1), String::from_utf8(output.stderr).unwrap())
+}
+
+#[cfg(unix)]
+#[test]
+fn a_file_that_does_not_fit_leaves_the_old_one() {
+    let folder = folder_with_cube();
+    folder.write("nodes.csv", "old");
+    let names = folder.names();
+    // No file may be larger than 4 kB; the signal that would end the program is ignored.
+    let limit = "trap '' XFSZ; ulimit -f 8;";
+    for words in ["build --resolution 4 -o nodes.csv", "export cube nodes.csv"] {
+        let (status, stderr) = in_shell(&folder, limit, words);
+        let line = one_line(&stderr);
+        assert_eq!(status, 1, "{line}");
+        assert!(line.starts_with("nodes.csv: file too large, expected room for "), "{line}");
+        assert_eq!((folder.names(), folder.read("nodes.csv")), (names.clone(), b"old".to_vec()));
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_leaves_nothing() {
+    let folder = folder_with_cube();
+    let disk = folder.path().join("disk");
+    std::fs::create_dir(&disk).unwrap();
+    let mounted = Command::new("mount")
+        .args(["-t", "tmpfs", "-o", "size=16k", "tmpfs"])
+        .arg(&disk)
+        .stderr(Stdio::null())
+        .status();
+    if !mounted.is_ok_and(|status| status.success()) {
+        eprintln!("skipped a_full_disk_leaves_nothing: only root can mount a small disk");
+        return;
+    }
+    let run = folder.run("build --resolution 4 -o disk/cube");
+    let left = std::fs::read_dir(&disk).unwrap().count();
+    Command::new("umount").arg(&disk).status().unwrap();
+    assert_eq!((run.status, left), (1, 0), "{}", run.stderr);
+    let line = one_line(&run.stderr);
+    assert!(line.starts_with("disk/cube: no space left on the disk, expected room for"), "{line}");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_or_closed_standard_output() {
+    let folder = folder_with_cube();
+    let (status, stderr) = in_shell(&folder, "exec >/dev/full;", "inspect cube");
+    assert_eq!(status, 1);
+    assert_eq!(one_line(&stderr), "standard output: no space left on the disk, expected room");
+    let output = Command::new("sh")
+        .args(["-c", "\"$0\" inspect cube | true"])
+        .arg(program())
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    assert_eq!(String::from_utf8(output.stderr).unwrap(), "");
+}

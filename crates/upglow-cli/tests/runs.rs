@@ -1,0 +1,87 @@
+//! The same bytes from any run, and nothing from a stopped one.
+
+mod support;
+
+use support::Folder;
+
+#[test]
+fn the_number_of_threads_does_not_change_a_byte() {
+    for model in ["dyes", "analytic", "reflectance"] {
+        let folder = Folder::new();
+        for threads in ["1", "2", "5"] {
+            folder.done(&format!(
+                "build --resolution 5 --model {model} --threads {threads} -o {threads}"
+            ));
+        }
+        assert_eq!(folder.read("1"), folder.read("2"), "{model}");
+        assert_eq!(folder.read("1"), folder.read("5"), "{model}");
+    }
+}
+
+#[test]
+fn the_same_seed_verifies_the_same_colors() {
+    let folder = Folder::new();
+    folder.done("build --resolution 3 -o cube");
+    let first = folder.done("--json verify cube --points 500 --seed 3 --threads 1");
+    assert_eq!(first, folder.done("--json verify cube --points 500 --seed 3 --threads 2"));
+    assert_ne!(first, folder.done("--json verify cube --points 500 --seed 4"));
+}
+
+#[cfg(target_os = "linux")]
+mod stopped {
+    use std::process::{Command, Stdio};
+    use std::time::{Duration, Instant};
+
+    use super::Folder;
+    use super::support::{one_line, program};
+
+    /// Far more than a program needs to start or to stop on a busy machine.
+    const PATIENCE: Duration = Duration::from_secs(60);
+
+    /// Whether the process has set a handler for this signal.
+    fn catches(pid: u32, signal: u32) -> bool {
+        let status = std::fs::read_to_string(format!("/proc/{pid}/status")).unwrap_or_default();
+        let mask = status.lines().find_map(|line| line.strip_prefix("SigCgt:"));
+        let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0);
+        mask >> (signal - 1) & 1 == 1
+    }
+
+    #[expect(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
+    fn stop(words: &str, name: &str, signal: u32) {
+        let folder = Folder::new();
+        folder.done("build --resolution 2 -o old");
+        let child = Command::new(program())
+            .args(words.split_whitespace())
+            .current_dir(folder.path())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let start = Instant::now();
+        while !catches(child.id(), signal) {
+            assert!(start.elapsed() < PATIENCE, "the program does not start");
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        std::thread::sleep(Duration::from_millis(100));
+        let sent = Command::new("kill").args([name, &child.id().to_string()]).status().unwrap();
+        assert!(sent.success());
+        let output = child.wait_with_output().unwrap();
+        let stderr = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(130), "{stderr}");
+        assert_eq!(one_line(&stderr), "stopped, nothing was written");
+        assert!(output.stdout.is_empty());
+        assert!(start.elapsed() < PATIENCE, "it took too long to stop");
+        assert_eq!(folder.names(), ["old"]);
+    }
+
+    #[test]
+    fn a_build_leaves_no_file() {
+        stop("build --resolution 128 -o cube", "-INT", 2);
+        stop("build --resolution 128 -o cube", "-TERM", 15);
+    }
+
+    #[test]
+    fn a_verification_stops() {
+        stop("verify old --points 1000000000", "-INT", 2);
+    }
+}

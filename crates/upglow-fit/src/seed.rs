@@ -1,0 +1,169 @@
+//! The seed paper's way to the material of a color: from gray, then from the neighbors, through
+//! all pairs of dyes.
+//!
+//! What the paper leaves open is decided here: which unknowns start where, how the slope limit acts
+//! on coefficients, and that a color that reflectance shows gets no fluorescence.
+
+use upglow::{DyeModel, Edge, Fluorescence, Model, Sigmoid};
+use upglow_color::Metric;
+
+use crate::fitter::EXACT;
+use crate::job::{Job, Solve};
+use crate::parabola::MIDDLE_NM;
+use crate::problem::{LimitedProblem, Shape};
+use crate::solver::{Residuals, SolverOptions, solve};
+use crate::starts::Start;
+use crate::{Fit, Parameters};
+
+/// Where fluorescence starts: half strength, half of each dye, the middle of the bells' ranges.
+const START_CONCENTRATION: f64 = 0.5;
+const START_WEIGHT: f64 = 0.5;
+const START_BELLS_NM: [f64; 2] = [555.0, 65.0];
+
+/// Where features start: U- and n-shaped around the middle, half as steep as the limit.
+const START_WIDTH_NM: f64 = 100.0;
+
+/// Evaluations of one solve.
+const STEPS: usize = 40;
+
+impl Job<'_> {
+    /// The first material, from a gray start.
+    pub(crate) fn seed_first(&self, parameters: Parameters) -> Fit {
+        let passive = self.seed_passive(parameters);
+        if passive.de2000 <= EXACT {
+            return passive;
+        }
+        self.seed_variants(parameters, passive, passive)
+    }
+
+    /// The best of `known` and what `known` and the neighbors lead to.
+    pub(crate) fn seed_again(&self, parameters: Parameters, known: Fit, neighbors: &[Fit]) -> Fit {
+        let mut best = known;
+        for start in [known].iter().chain(neighbors) {
+            best = self.seed_variants(parameters, *start, best);
+            if best.de2000 <= EXACT {
+                break;
+            }
+        }
+        best
+    }
+
+    /// Reflectance alone. CIEDE2000 has no slope to follow at gray: there CIELAB goes first.
+    fn seed_passive(&self, parameters: Parameters) -> Fit {
+        let gray = Sigmoid::flat(0.5).to_edge(MIDDLE_NM);
+        let slope_per_nm = self.fitter.slope_limit_per_nm / 2.0;
+        let starts = match parameters {
+            Parameters::Coefficients => vec![gray],
+            Parameters::Features => {
+                [1.0, -1.0].map(|sign| soft_shape(sign * START_WIDTH_NM, slope_per_nm)).to_vec()
+            }
+        };
+        let begin = Self { goal: self.goal.under(Metric::De76), ..*self };
+        let fits = starts.into_iter().map(|reflectance| {
+            let start = Start { reflectance, fluorescence: Fluorescence::None };
+            let begun = begin.seed_follow(parameters, start);
+            self.seed_follow(parameters, Start::from(begun))
+        });
+        fits.min_by(|a, b| a.distance.total_cmp(&b.distance)).expect("there is a start")
+    }
+
+    /// The best of `known` and of what `from` leads to, with each pair of dyes.
+    fn seed_variants(&self, parameters: Parameters, from: Fit, known: Fit) -> Fit {
+        let mut best = known;
+        for fluorescence in variants(self.fitter.model.model(), from.fluorescence) {
+            let start = Start { reflectance: from.reflectance, fluorescence };
+            let found = self.seed_follow(parameters, start);
+            if found.distance < best.distance {
+                best = found;
+            }
+            if best.de2000 <= EXACT {
+                break;
+            }
+        }
+        best
+    }
+
+    fn seed_follow(&self, parameters: Parameters, start: Start) -> Fit {
+        let slope_limit_per_nm = self.fitter.slope_limit_per_nm;
+        match parameters {
+            Parameters::Coefficients => {
+                let fit = self.follow(start, Shape::Free, &Penalized { slope_limit_per_nm });
+                self.held_at_limit(fit)
+            }
+            Parameters::Features => {
+                let sign = if start.reflectance.level >= 0.0 { 1.0 } else { -1.0 };
+                self.follow(start, Shape::Features { slope_limit_per_nm, sign }, &Bounded)
+            }
+        }
+    }
+
+    /// A reflectance that the penalty left too steep, no steeper than the limit.
+    fn held_at_limit(&self, fit: Fit) -> Fit {
+        let limit = self.fitter.slope_limit_per_nm;
+        let Edge { slope_per_nm, .. } = fit.reflectance;
+        if slope_per_nm.abs() <= limit {
+            return fit;
+        }
+        let slope_per_nm = slope_per_nm.clamp(-limit, limit);
+        self.judge(Edge { slope_per_nm, ..fit.reflectance }, fit.fluorescence)
+    }
+}
+
+/// A shape around the middle; `signed_width_nm` is positive for valleys.
+fn soft_shape(signed_width_nm: f64, slope_per_nm: f64) -> Edge {
+    let features = upglow::Features {
+        shift_nm: MIDDLE_NM,
+        width_nm: signed_width_nm.abs(),
+        slope_per_nm: slope_per_nm.copysign(signed_width_nm),
+    };
+    features.to_sigmoid().expect("width and slope are not zero").to_edge(MIDDLE_NM)
+}
+
+/// A fluorescence with each pair of dyes in turn.
+fn variants(model: &Model, fluorescence: Fluorescence) -> Vec<Fluorescence> {
+    match model {
+        Model::Reflectance => vec![Fluorescence::None],
+        Model::Dyes(dyes) => dye_variants(dyes, fluorescence),
+        Model::Analytic(_) => match fluorescence {
+            Fluorescence::Analytic { .. } => vec![fluorescence],
+            _ => {
+                let [emission_peak_nm, stokes_shift_nm] = START_BELLS_NM;
+                let concentration = START_CONCENTRATION;
+                vec![Fluorescence::Analytic { emission_peak_nm, stokes_shift_nm, concentration }]
+            }
+        },
+    }
+}
+
+fn dye_variants(dyes: &DyeModel, fluorescence: Fluorescence) -> Vec<Fluorescence> {
+    let (weight, concentration) = match fluorescence {
+        Fluorescence::Dyes { weight, concentration, .. } => (weight, concentration),
+        _ => (START_WEIGHT, START_CONCENTRATION),
+    };
+    (0..dyes.pairs()).map(|first| Fluorescence::Dyes { first, weight, concentration }).collect()
+}
+
+/// Coefficients, with the slope limit as a penalty.
+struct Penalized {
+    slope_limit_per_nm: f64,
+}
+
+impl Solve for Penalized {
+    fn solve<const N: usize>(&self, problem: &impl Residuals<3, N>, start: [f64; N]) -> [f64; N] {
+        let limited = LimitedProblem { problem, slope_limit_per_nm: self.slope_limit_per_nm };
+        solve(&limited, start, &options()).x
+    }
+}
+
+/// Features, with the slope limit as a bound.
+struct Bounded;
+
+impl Solve for Bounded {
+    fn solve<const N: usize>(&self, problem: &impl Residuals<3, N>, start: [f64; N]) -> [f64; N] {
+        solve(problem, start, &options()).x
+    }
+}
+
+fn options() -> SolverOptions {
+    SolverOptions { step_limit: STEPS, ..SolverOptions::default() }
+}
