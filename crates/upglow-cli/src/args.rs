@@ -11,7 +11,7 @@ use upglow_color::{Adaptation, Metric};
 /// RGB colors to physically valid spectral materials, with fluorescence where no reflectance shows
 /// the color.
 #[derive(Clone, Debug, Parser)]
-#[command(name = "upglow", version, max_term_width = 100, infer_long_args = false)]
+#[command(name = "upglow", version, max_term_width = 100)]
 pub(crate) struct Args {
     #[command(subcommand)]
     pub(crate) command: Command,

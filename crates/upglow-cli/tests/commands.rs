@@ -123,7 +123,7 @@ fn a_fresh_cube_keeps_every_law() {
 /// A cube of which every node has this reflectance, with a slope limit of 0.01/nm.
 fn cube_of(reflectance: Edge) -> Vec<u8> {
     let node = Node::new(reflectance, Fluorescence::None, 0.0);
-    let fit = FitRecord { metric: "de2000".into(), slope_max_per_nm: Some(0.01), sweeps: 0 };
+    let fit = FitRecord { slope_max_per_nm: Some(0.01), ..FitRecord::default() };
     let cube = Cube::new(Contract::default(), Model::Reflectance, fit, 2, vec![node; 8]);
     cube.unwrap().to_bytes().unwrap()
 }

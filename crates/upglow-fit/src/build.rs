@@ -63,6 +63,8 @@ pub fn build_cube(
         metric: options.metric.to_string(),
         slope_max_per_nm: options.slope_max_per_nm,
         sweeps: options.sweeps,
+        method: options.method.to_string(),
+        evaluations: fitter.evaluations(),
     };
     Ok(Cube::new(contract.clone(), model.clone(), fit, resolution, nodes)?)
 }

@@ -1,5 +1,7 @@
 //! Fits the material of one color.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use upglow::{Edge, Fluorescence, Material, Model, ModelOnGrid};
 use upglow_color::{Contract, Grid, LinearRgb, Xyz};
 
@@ -9,7 +11,7 @@ use crate::sums::{Lanes, Sums};
 use crate::{FitOptions, FitOptionsError, Method};
 
 /// Everything that fits under one contract, with one model, share.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Fitter {
     pub(crate) model: ModelOnGrid,
     pub(crate) slope_limit_per_nm: f64,
@@ -17,6 +19,7 @@ pub struct Fitter {
     pub(crate) starts: StartTable,
     pub(crate) dye_lanes: Vec<Lanes>,
     options: FitOptions,
+    evaluations: AtomicU64,
 }
 
 /// The material of one color.
@@ -83,12 +86,22 @@ impl Fitter {
             _ => 0,
         };
         let dye_lanes = (0..dyes).map(|dye| sums.lanes(model.dye_absorption(dye))).collect();
-        Ok(Self { model, slope_limit_per_nm, sums, starts, dye_lanes, options })
+        let evaluations = AtomicU64::new(0);
+        Ok(Self { model, slope_limit_per_nm, sums, starts, dye_lanes, options, evaluations })
     }
 
     /// The model and the contract, on the grid of the fit.
     pub fn model(&self) -> &ModelOnGrid {
         &self.model
+    }
+
+    /// How often residuals and derivatives were evaluated so far, in all fits.
+    pub fn evaluations(&self) -> u64 {
+        self.evaluations.load(Ordering::Relaxed)
+    }
+
+    pub(crate) fn count(&self, evaluations: usize) {
+        self.evaluations.fetch_add(evaluations as u64, Ordering::Relaxed);
     }
 
     /// The material of `rgb`, which may be brighter than white.

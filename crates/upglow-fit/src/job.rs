@@ -5,7 +5,7 @@ use upglow_color::{Goal, Metric};
 
 use crate::parabola::MIDDLE_NM;
 use crate::problem::{BELL_UNIT_NM, BellProblem, DyeProblem, PassiveProblem, Shape};
-use crate::solver::Residuals;
+use crate::solver::{Residuals, Summary};
 use crate::starts::Start;
 use crate::{Fit, Fitter};
 
@@ -58,8 +58,8 @@ impl Job<'_> {
         match (start.fluorescence, self.fitter.model.model()) {
             (Fluorescence::Dyes { first, weight, concentration }, Model::Dyes(dyes)) => {
                 let problem = self.dye_problem(dyes, first, shape);
-                let x = solve.solve(&problem, [s0, s1, s2, concentration, weight]);
-                let [s0, s1, s2, concentration, weight] = x;
+                let x = [s0, s1, s2, concentration, weight];
+                let [s0, s1, s2, concentration, weight] = self.counted(solve.solve(&problem, x));
                 let fluorescence = Fluorescence::Dyes { first, weight, concentration };
                 self.judge(shape.edge([s0, s1, s2]), fluorescence)
             }
@@ -69,8 +69,9 @@ impl Job<'_> {
             ) => {
                 let [peak, shift] = [emission_peak_nm, stokes_shift_nm].map(|v| v / BELL_UNIT_NM);
                 let problem = self.bell_problem(bells, shape);
-                let x = solve.solve(&problem, [s0, s1, s2, concentration, peak, shift]);
-                let [s0, s1, s2, concentration, peak, shift] = x;
+                let x = [s0, s1, s2, concentration, peak, shift];
+                let [s0, s1, s2, concentration, peak, shift] =
+                    self.counted(solve.solve(&problem, x));
                 let fluorescence = Fluorescence::Analytic {
                     emission_peak_nm: peak * BELL_UNIT_NM,
                     stokes_shift_nm: shift * BELL_UNIT_NM,
@@ -79,10 +80,16 @@ impl Job<'_> {
                 self.judge(shape.edge([s0, s1, s2]), fluorescence)
             }
             _ => {
-                let x = solve.solve(&self.passive_problem(shape), numbers);
+                let x = self.counted(solve.solve(&self.passive_problem(shape), numbers));
                 self.judge(shape.edge(x), Fluorescence::None)
             }
         }
+    }
+
+    /// What the solver found, with its evaluations added to the fitter's.
+    pub(crate) fn counted<const N: usize>(&self, found: Summary<N>) -> [f64; N] {
+        self.fitter.count(found.evaluations);
+        found.x
     }
 
     pub(crate) fn passive_problem(&self, shape: Shape) -> PassiveProblem<'_> {
@@ -110,6 +117,6 @@ impl Job<'_> {
 
 /// A way to solve any of the problems of a color.
 pub(crate) trait Solve {
-    /// The unknowns that it finds from `start`.
-    fn solve<const N: usize>(&self, problem: &impl Residuals<3, N>, start: [f64; N]) -> [f64; N];
+    /// What it finds from `start`.
+    fn solve<const N: usize>(&self, problem: &impl Residuals<3, N>, start: [f64; N]) -> Summary<N>;
 }

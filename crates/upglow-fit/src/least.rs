@@ -2,7 +2,7 @@
 
 use crate::job::Solve;
 use crate::problem::{CONCENTRATION, LeastProblem};
-use crate::solver::{Residuals, SolverOptions, solve};
+use crate::solver::{Residuals, SolverOptions, Summary, solve};
 
 /// What a concentration of 1 counts in the search for the least one, in units of the metric.
 /// Larger leaves the color earlier, smaller takes more rounds.
@@ -25,12 +25,15 @@ const LEAST_SETTLED: (f64, f64) = (3e-3, 2e-3);
 pub(crate) struct LeastConcentration;
 
 impl Solve for LeastConcentration {
-    fn solve<const N: usize>(&self, problem: &impl Residuals<3, N>, start: [f64; N]) -> [f64; N] {
+    fn solve<const N: usize>(&self, problem: &impl Residuals<3, N>, start: [f64; N]) -> Summary<N> {
         let mut x = start;
         let mut multipliers = [0.0; 3];
+        let mut evaluations = 0;
         for round in 0..LEAST_ROUNDS {
             let before = x[CONCENTRATION];
-            x = one_round(problem, x, multipliers, round == 0);
+            let found = one_round(problem, x, multipliers, round == 0);
+            x = found.x;
+            evaluations += found.evaluations + 1;
             let (residuals, _) = problem.eval(&x);
             (0..3).for_each(|i| multipliers[i] += residuals[i]);
             let norm = residuals.iter().map(|r| r * r).sum::<f64>().sqrt();
@@ -40,7 +43,8 @@ impl Solve for LeastConcentration {
             }
         }
         let polish = SolverOptions { damping: 1e-6, step_limit: 20, ..SolverOptions::default() };
-        solve(problem, x, &polish).x
+        let found = solve(problem, x, &polish);
+        Summary { evaluations: evaluations + found.evaluations, ..found }
     }
 }
 
@@ -49,7 +53,7 @@ fn one_round<const N: usize>(
     x: [f64; N],
     multipliers: [f64; 3],
     is_first: bool,
-) -> [f64; N] {
+) -> Summary<N> {
     let least = LeastProblem { problem, multipliers, concentration_weight: CONCENTRATION_WEIGHT };
     let [first_steps, later_steps] = LEAST_STEPS;
     let options = SolverOptions {
@@ -58,5 +62,5 @@ fn one_round<const N: usize>(
         step_limit: if is_first { first_steps } else { later_steps },
         damping: if is_first { 1e-2 } else { 1e-4 },
     };
-    solve(&least, x, &options).x
+    solve(&least, x, &options)
 }

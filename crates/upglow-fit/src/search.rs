@@ -9,7 +9,7 @@ use crate::job::{Job, Solve};
 use crate::least::LeastConcentration;
 use crate::parabola::{MIDDLE_NM, sigmoid_of};
 use crate::problem::{PassiveProblem, Shape};
-use crate::solver::{Residuals, SolverOptions, solve};
+use crate::solver::{Residuals, SolverOptions, Summary, solve};
 use crate::starts::Start;
 
 /// Evaluations for a reflectance without limits: it takes 5, and 10 where it goes astray.
@@ -33,8 +33,8 @@ const MOST_HOPS: usize = 2;
 struct NearestColor;
 
 impl Solve for NearestColor {
-    fn solve<const N: usize>(&self, problem: &impl Residuals<3, N>, start: [f64; N]) -> [f64; N] {
-        solve(problem, start, &SolverOptions::default()).x
+    fn solve<const N: usize>(&self, problem: &impl Residuals<3, N>, start: [f64; N]) -> Summary<N> {
+        solve(problem, start, &SolverOptions::default())
     }
 }
 
@@ -86,6 +86,7 @@ impl Job<'_> {
         let problem = PassiveProblem { sums: &self.fitter.sums, goal, shape: Shape::Free };
         let options = SolverOptions { step_limit: PASSIVE_STEPS, ..SolverOptions::default() };
         let free = solve(&problem, [0.0; 3], &options);
+        self.fitter.count(free.evaluations);
         let reflectance = sigmoid_of(free.x).to_edge(MIDDLE_NM);
         let steepness = reflectance.slope_per_nm.abs() / self.fitter.slope_limit_per_nm;
         if steepness <= 1.0 {

@@ -11,7 +11,7 @@ use crate::fitter::EXACT;
 use crate::job::{Job, Solve};
 use crate::parabola::MIDDLE_NM;
 use crate::problem::{LimitedProblem, Shape};
-use crate::solver::{Residuals, SolverOptions, solve};
+use crate::solver::{Residuals, SolverOptions, Summary, solve};
 use crate::starts::Start;
 use crate::{Fit, Parameters};
 
@@ -149,9 +149,9 @@ struct Penalized {
 }
 
 impl Solve for Penalized {
-    fn solve<const N: usize>(&self, problem: &impl Residuals<3, N>, start: [f64; N]) -> [f64; N] {
+    fn solve<const N: usize>(&self, problem: &impl Residuals<3, N>, start: [f64; N]) -> Summary<N> {
         let limited = LimitedProblem { problem, slope_limit_per_nm: self.slope_limit_per_nm };
-        solve(&limited, start, &options()).x
+        solve(&limited, start, &options())
     }
 }
 
@@ -159,8 +159,8 @@ impl Solve for Penalized {
 struct Bounded;
 
 impl Solve for Bounded {
-    fn solve<const N: usize>(&self, problem: &impl Residuals<3, N>, start: [f64; N]) -> [f64; N] {
-        solve(problem, start, &options()).x
+    fn solve<const N: usize>(&self, problem: &impl Residuals<3, N>, start: [f64; N]) -> Summary<N> {
+        solve(problem, start, &options())
     }
 }
 

@@ -92,7 +92,7 @@ mod tests {
     fn nodes_are_counted_by_their_stored_difference() {
         let differences = [0.0, 0.009, 0.01, 0.5, 1.0, 1.5, 2.0, 7.0];
         let node = |de2000| Node { de2000, ..Node::default() };
-        let fit = FitRecord { metric: "de2000".into(), slope_max_per_nm: None, sweeps: 0 };
+        let fit = FitRecord { slope_max_per_nm: None, ..FitRecord::default() };
         let nodes = differences.map(node).to_vec();
         let cube = Cube::new(Contract::default(), Model::Reflectance, fit, 2, nodes).unwrap();
         let summary = CubeSummary::of(&cube);

@@ -265,7 +265,7 @@ mod tests {
     fn cube(contract: Contract, model: Model, change: impl Fn(usize, &mut Node)) -> Cube {
         let colorimetry = contract.on(Grid::FIT);
         let sums = ModelOnGrid::new(&model, &colorimetry);
-        let fit = FitRecord { metric: "de2000".into(), slope_max_per_nm: Some(0.01), sweeps: 0 };
+        let fit = FitRecord { slope_max_per_nm: Some(0.01), ..FitRecord::default() };
         let empty = vec![Node::default(); RESOLUTION.pow(3)];
         let frame = Cube::new(contract.clone(), model.clone(), fit.clone(), RESOLUTION, empty);
         let frame = frame.unwrap();

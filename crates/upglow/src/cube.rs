@@ -17,8 +17,8 @@ pub struct Cube {
     nodes: Vec<Node>,
 }
 
-/// How the materials of a cube were found.
-#[derive(Clone, Debug, PartialEq)]
+/// How the materials of a cube were found. Nothing is known by default.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct FitRecord {
     /// Name of the color difference that was minimized.
     pub metric: String,
@@ -26,6 +26,10 @@ pub struct FitRecord {
     pub slope_max_per_nm: Option<f64>,
     /// How often each node looked at its neighbors' materials.
     pub sweeps: u32,
+    /// Name of the way materials were searched for.
+    pub method: String,
+    /// Evaluations of residuals and derivatives that it took.
+    pub evaluations: u64,
 }
 
 /// One stored material and how far it is from its color.

@@ -402,7 +402,7 @@ mod tests {
             fluorescence: [0.25, 0.5, 0.0],
             de2000: 0.125,
         };
-        let fit = FitRecord { metric: "de2000".into(), slope_max_per_nm: Some(0.01), sweeps: 2 };
+        let fit = FitRecord { slope_max_per_nm: Some(0.01), ..FitRecord::default() };
         Cube::new(Contract::default(), model, fit, 3, (0..27).map(node).collect()).unwrap()
     }
 

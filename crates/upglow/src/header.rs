@@ -76,6 +76,8 @@ pub(crate) struct FitHeader {
     metric: String,
     slope_max_per_nm: Option<f64>,
     sweeps: u32,
+    method: String,
+    evaluations: u64,
 }
 
 /// The curves that the header names and the file's tensors hold.
@@ -242,13 +244,13 @@ impl DyeHeader {
 
 impl FitHeader {
     fn of(fit: &FitRecord) -> Self {
-        let FitRecord { metric, slope_max_per_nm, sweeps } = fit.clone();
-        Self { metric, slope_max_per_nm, sweeps }
+        let FitRecord { metric, slope_max_per_nm, sweeps, method, evaluations } = fit.clone();
+        Self { metric, slope_max_per_nm, sweeps, method, evaluations }
     }
 
     pub(crate) fn to_record(&self) -> FitRecord {
-        let Self { metric, slope_max_per_nm, sweeps } = self.clone();
-        FitRecord { metric, slope_max_per_nm, sweeps }
+        let Self { metric, slope_max_per_nm, sweeps, method, evaluations } = self.clone();
+        FitRecord { metric, slope_max_per_nm, sweeps, method, evaluations }
     }
 }
 

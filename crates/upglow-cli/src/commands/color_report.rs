@@ -191,7 +191,7 @@ impl ColorReport {
         };
         let judgment = match self.de2000 {
             found if found <= CubeSummary::EXACT_DE2000 => ", exact",
-            found if found > VISIBLE_DE2000 => ", visibly off: the model does not reach the color",
+            found if found > VISIBLE_DE2000 => ", visibly off",
             _ => "",
         };
         let mut lines = Lines::default();

@@ -104,7 +104,7 @@ mod tests {
     use upglow_color::Contract;
 
     fn lines(model: Model, node: Node) -> Vec<String> {
-        let fit = FitRecord { metric: "de2000".into(), slope_max_per_nm: None, sweeps: 0 };
+        let fit = FitRecord { slope_max_per_nm: None, ..FitRecord::default() };
         let cube = Cube::new(Contract::default(), model, fit, 2, vec![node; 8]).unwrap();
         csv(&cube).lines().map(str::to_owned).collect()
     }
