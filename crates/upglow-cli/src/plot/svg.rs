@@ -22,8 +22,9 @@ const SWATCH: f64 = 100.0;
 
 /// Longer lines of the caption would leave the page at the font's usual width.
 const CAPTION_LETTERS: usize = 31;
-/// More lines of the caption would leave the page.
-const CAPTION_LINES: usize = 9;
+/// Four lines and the dyes of four materials; more would leave the page.
+const CAPTION_LINES: usize = 12;
+const CAPTION_STEP: f64 = 18.0;
 
 const FONT: &str = "'DejaVu Sans', Verdana, Arial, sans-serif";
 const INK: &str = "#222222";
@@ -178,7 +179,7 @@ fn swatches(figure: &Figure<'_>) -> String {
     let note = clipped.then(|| "outside sRGB, shown clipped".to_owned());
     let lines = figure.caption.iter().take(CAPTION_LINES).cloned().chain(note);
     for (row, line) in (0_u8..).zip(lines) {
-        let y = top + SWATCH + 26.0 + 20.0 * f64::from(row);
+        let y = top + SWATCH + 26.0 + CAPTION_STEP * f64::from(row);
         let text = escaped(&shortened(&line));
         let _ = writeln!(svg, "<text x=\"{SIDE}\" y=\"{y}\" font-size=\"12.5\">{text}</text>");
     }
