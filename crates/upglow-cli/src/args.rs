@@ -7,6 +7,7 @@ use std::str::FromStr;
 use clap::{Parser, Subcommand};
 use upglow::{Accounting, Cube, Interpolation, Mixing, QuantumYield};
 use upglow_color::{Adaptation, Metric};
+use upglow_fit::Method;
 
 /// RGB colors to physically valid spectral materials, with fluorescence where no reflectance shows
 /// the color.
@@ -89,7 +90,12 @@ pub(crate) struct BuildArgs {
     /// Greatest slope of any reflectance, 0.0001 to 0.2 per nm, or none
     #[arg(long, default_value = "0.01", value_name = "SLOPE|none", help_heading = "Fit")]
     pub(crate) slope_max_per_nm: SlopeLimit,
-    /// How often a node that missed its color tries its neighbors' materials [default: 2]
+    /// How to search: search (ours), seed or seed-features (the seed paper's, moving coefficients
+    /// or features)
+    #[arg(long, default_value = "search", value_name = "NAME", help_heading = "Fit")]
+    pub(crate) method: Method,
+    /// How often a node that missed its color tries its neighbors' materials [default: 2, and 4
+    /// for the seed's methods]
     #[arg(long, value_name = "N", value_parser = count, help_heading = "Fit")]
     pub(crate) sweeps: Option<u32>,
     /// Threads; the file does not depend on it [default: one for each core]

@@ -35,12 +35,11 @@ impl BuildPlan {
             adaptation: args.adapt,
         };
         let model = model(args)?;
-        let defaults = FitOptions::default();
         let options = FitOptions {
             metric: args.metric,
             slope_max_per_nm: args.slope_max_per_nm.0,
-            sweeps: args.sweeps.unwrap_or(defaults.sweeps),
-            ..defaults
+            sweeps: args.sweeps.unwrap_or(args.method.default_sweeps()),
+            method: args.method,
         };
         Fitter::new(&contract, &model, options)
             .map_err(|error| Failure::option("--slope-max-per-nm", error))?;

@@ -16,7 +16,7 @@ pub enum Adaptation {
     None,
 }
 
-/// Bradford's sharpened cone responses. # Source: [lam], as in ICC.1:2022, annex E.
+/// Bradford's sharpened cone responses. # Source: `bradford`, as in ICC.1:2022, annex E.
 const LMS_FROM_XYZ: Matrix3 =
     Matrix3([[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]]);
 

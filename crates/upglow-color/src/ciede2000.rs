@@ -7,7 +7,7 @@ use crate::{Lab, Matrix3};
 ///
 /// # Source
 ///
-/// [sharma], equations 2 to 22.
+/// `sharma`, equations 2 to 22.
 pub fn ciede2000(reference: Lab, sample: Lab) -> f64 {
     let [l, c, h] = ciede2000_residuals(reference, sample).0;
     (l * l + c * c + h * h).sqrt()
@@ -21,7 +21,7 @@ pub fn ciede2000(reference: Lab, sample: Lab) -> f64 {
 ///
 /// # Source
 ///
-/// [sharma], equations 2 to 22. Hue angles are used as unit vectors: the mean hue is the direction
+/// `sharma`, equations 2 to 22. Hue angles are used as unit vectors: the mean hue is the direction
 /// of their sum, which is the branch that equation 14 picks by cases.
 pub fn ciede2000_residuals(reference: Lab, sample: Lab) -> ([f64; 3], Matrix3) {
     let (lightness, by_l) = lightness_residual(reference.l, sample.l);

@@ -41,11 +41,11 @@ const RELATIVE_GAP: f64 = 1e-9;
 const STEP_LIMIT: usize = 500;
 
 impl ColorSolid {
-    /// The colors of all reflectances 0 ≤ r(λ) ≤ 1: the solid of [macadam].
+    /// The colors of all reflectances 0 ≤ r(λ) ≤ 1: the solid of `macadam`.
     ///
     /// # Source
     ///
-    /// [macadam]; as a support function, h(n) = Σ max(0, n·wᵢ).
+    /// `macadam`; as a support function, h(n) = Σ max(0, n·wᵢ).
     pub fn reflectance(colorimetry: &Colorimetry) -> Self {
         Self::new(colorimetry, false)
     }
@@ -108,7 +108,7 @@ impl ColorSolid {
     ///
     /// # Source
     ///
-    /// [gilbert]; the nearest point of a simplex by trying all its faces, which is exact for up to
+    /// `gilbert`; the nearest point of a simplex by trying all its faces, which is exact for up to
     /// four corners.
     fn search(&self, color: Xyz, goal: Goal) -> Nearest {
         let relative = |p: Xyz| [0, 1, 2].map(|k| p.0[k] - color.0[k]);

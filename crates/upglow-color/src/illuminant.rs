@@ -92,7 +92,7 @@ impl Illuminant {
     ///
     /// # Source
     ///
-    /// [cie015], section 4.1.2; M1 and M2 rounded to three decimals as CIE does for its tables.
+    /// `cie015`, section 4.1.2; M1 and M2 rounded to three decimals as CIE does for its tables.
     fn daylight(name: &str, nominal_cct_k: f64) -> Self {
         let t = nominal_cct_k * C2_NOW_OVER_C2_THEN;
         let [x, y] = daylight_chromaticity(t);
@@ -113,7 +113,7 @@ impl Illuminant {
     ///
     /// # Source
     ///
-    /// [cie015], section 4.1.1, equation 1: 2848 K with the second constant 1.435e7 nm·K.
+    /// `cie015`, section 4.1.1, equation 1: 2848 K with the second constant 1.435e7 nm·K.
     fn a() -> Self {
         let planck = |nm: f64| nm.powi(-5) / ((1.435e7 / (2848.0 * nm)).exp() - 1.0);
         Self::from_fn("A", |nm| 100.0 * planck(nm) / planck(REFERENCE_NM))
@@ -147,7 +147,7 @@ impl Default for Illuminant {
 ///
 /// # Source
 ///
-/// [cie015], section 4.1.2, equations 6 to 8.
+/// `cie015`, section 4.1.2, equations 6 to 8.
 fn daylight_chromaticity(t: f64) -> [f64; 2] {
     let x = if t <= 7000.0 {
         0.244_063 + 0.099_11e3 / t + 2.967_8e6 / t.powi(2) - 4.607_0e9 / t.powi(3)

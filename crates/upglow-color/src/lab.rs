@@ -24,7 +24,7 @@ const LINEAR_SLOPE: f64 = 24389.0 / 27.0 / 116.0;
 ///
 /// # Source
 ///
-/// [cie015], section 8.2.1.
+/// `cie015`, section 8.2.1.
 pub fn lab_from_xyz(xyz: Xyz, white: Xyz) -> Lab {
     let [fx, fy, fz] = [0, 1, 2].map(|k| compress(xyz.0[k] / white.0[k]).0);
     Lab { l: 116.0 * fy - 16.0, a: 500.0 * (fx - fy), b: 200.0 * (fy - fz) }

@@ -21,7 +21,7 @@ const LEAST_SETTLED: (f64, f64) = (3e-3, 2e-3);
 ///
 /// # Source
 ///
-/// The method of multipliers: [hestenes].
+/// The method of multipliers: `hestenes`.
 pub(crate) struct LeastConcentration;
 
 impl Solve for LeastConcentration {

@@ -30,7 +30,7 @@ pub enum Method {
     ///
     /// # Source
     ///
-    /// [konig], sections 4 and 5; [jung] for the sweeps.
+    /// `konig`, sections 4 and 5; `jung` for the sweeps.
     Seed(Parameters),
 }
 
@@ -42,6 +42,16 @@ pub enum Parameters {
     Coefficients,
     /// Shift, width, slope; the slope limit is a bound.
     Features,
+}
+
+impl Method {
+    /// The sweeps that this way of searching needs: two for ours, four as the paper has them.
+    pub const fn default_sweeps(self) -> u32 {
+        match self {
+            Self::Search => 2,
+            Self::Seed(_) => 4,
+        }
+    }
 }
 
 impl fmt::Display for Method {
@@ -78,7 +88,7 @@ impl Default for FitOptions {
         Self {
             metric: Metric::De2000,
             slope_max_per_nm: Some(0.01),
-            sweeps: 2,
+            sweeps: Method::Search.default_sweeps(),
             method: Method::Search,
         }
     }

@@ -61,7 +61,7 @@ pub(crate) fn edge_chart([e, p, relative]: [f64; 3], slope_limit_per_nm: f64) ->
 ///
 /// # Source
 ///
-/// [konig], Algorithm 1; with σ the sign of the slope and P = σ|P| the parabola at the steepest
+/// `konig`, Algorithm 1; with σ the sign of the slope and P = σ|P| the parabola at the steepest
 /// point: |P|√(1 + P²) = 1/(6|s|w), c0 = s(1 + P²)^(3/2)/w, p = (5P² − 1)/(6P).
 pub(crate) fn feature_chart([z, w, relative]: [f64; 3], slope_limit_per_nm: f64) -> Chart {
     let unit = slope_limit_per_nm * UNIT_NM;

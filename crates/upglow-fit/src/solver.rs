@@ -66,7 +66,7 @@ const MOST_DAMPING: f64 = 1e12;
 ///
 /// # Source
 ///
-/// [levenberg], [marquardt]; bounds by an active set: an unknown at a bound that the gradient
+/// `levenberg`, `marquardt`; bounds by an active set: an unknown at a bound that the gradient
 /// presses against is left out, one that a step would carry over a bound is set on it and the step
 /// of the others solved again.
 pub fn solve<const M: usize, const N: usize>(

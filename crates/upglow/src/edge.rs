@@ -34,7 +34,7 @@ impl Edge {
     ///
     /// # Source
     ///
-    /// From [konig], Algorithm 1, with the origin moved to z ± w: there the sigmoid's argument is
+    /// From `konig`, Algorithm 1, with the origin moved to z ± w: there the sigmoid's argument is
     /// P, and the condition that its slope is greatest ties the quadratic coefficient to P and s.
     pub fn parabola(self) -> [f64; 3] {
         let Self { level: p, slope_per_nm: s, .. } = self;

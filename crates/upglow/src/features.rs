@@ -41,7 +41,7 @@ impl Features {
     ///
     /// # Source
     ///
-    /// [konig], section 4.3, Algorithm 1. There `t = 1 + P²`, with P the parabola at the steepest
+    /// `konig`, section 4.3, Algorithm 1. There `t = 1 + P²`, with P the parabola at the steepest
     /// point; the parabola at the extremum is the second term of its `c2`.
     pub fn to_vertex(self) -> Result<Vertex, FeatureError> {
         let Self { shift_nm: z, width_nm: w, slope_per_nm: s } = self;
@@ -71,7 +71,7 @@ impl Features {
 impl Vertex {
     /// The features; `None` for a flat reflectance, whose features lie at infinity.
     ///
-    /// The inverse of [konig], Algorithm 1: P = (3p + σ√(9p² + 5)) / 5, w = √((P − p) / c0),
+    /// The inverse of `konig`, Algorithm 1: P = (3p + σ√(9p² + 5)) / 5, w = √((P − p) / c0),
     /// s = c0·w / (1 + P²)^(3/2), with p the parabola at the extremum and σ the sign of c0.
     pub fn to_features(self) -> Option<Features> {
         let Self { curvature_per_nm2: c0, shift_nm, peak: p } = self;

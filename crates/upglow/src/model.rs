@@ -225,7 +225,7 @@ impl DyeCurves {
 ///
 /// # Source
 ///
-/// [jung], section 4; its widths are not published, so they are options here.
+/// `jung`; its widths are not published, so they are options here.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AnalyticModel {
     absorption_fwhm_nm: f64,

@@ -6,7 +6,7 @@
 ///
 /// # Source
 ///
-/// [jakob], equation 6; [konig], equation 1.
+/// `jakob`; `konig`, equation 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sigmoid {
     /// Coefficient of λ², 1/nm².

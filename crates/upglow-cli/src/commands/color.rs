@@ -6,7 +6,7 @@ use upglow::{Cube, Mixture, ModelOnGrid};
 use upglow_color::{
     Adaptation, Colorimetry, Contract, Grid, Illuminant, LinearRgb, Metric, RgbSpace, Xyz,
 };
-use upglow_fit::{FitOptions, Fitter, Standing};
+use upglow_fit::{FitOptions, Fitter, Method, Standing};
 
 use super::color_report::{
     ColorReport, CurvesReport, Drawing, LightReport, PartReport, StandingReport,
@@ -49,7 +49,7 @@ fn material<'c>(plan: &ColorPlan, cube: &'c Cube) -> Result<Mixture<'c>, Failure
                 metric: record.metric.parse::<Metric>().map_err(|e| refused(e.to_string()))?,
                 slope_max_per_nm: record.slope_max_per_nm,
                 sweeps: record.sweeps,
-                ..FitOptions::default()
+                method: record.method.parse::<Method>().map_err(|e| refused(e.to_string()))?,
             };
             let fitter = Fitter::new(cube.contract(), cube.model(), options)
                 .map_err(|error| refused(error.to_string()))?;

@@ -66,6 +66,8 @@ struct FitReport {
     metric: String,
     slope_max_per_nm: Option<f64>,
     sweeps: u32,
+    method: String,
+    evaluations: u64,
 }
 
 pub(crate) fn run(args: &InspectArgs, format: Format) -> Result<(), Failure> {
@@ -95,6 +97,8 @@ impl InspectReport {
                 metric: fit.metric.clone(),
                 slope_max_per_nm: fit.slope_max_per_nm,
                 sweeps: fit.sweeps,
+                method: fit.method.clone(),
+                evaluations: fit.evaluations,
             },
             summary: SummaryReport::of(cube),
         }
@@ -212,7 +216,9 @@ impl Report for InspectReport {
         lines
             .add("metric", &self.fit.metric)
             .add("slope limit", slope)
-            .add("sweeps", self.fit.sweeps);
+            .add("method", &self.fit.method)
+            .add("sweeps", self.fit.sweeps)
+            .add("evaluations", self.fit.evaluations);
         self.summary.add_to(&mut lines);
         format!("{lines}{}", self.model.dye_table())
     }
