@@ -116,6 +116,9 @@ impl Job<'_> {
 
     /// The same color with as little of the same fluorescence as possible.
     fn with_least_fluorescence(&self, known: Fit) -> Fit {
+        if known.fluorescence == Fluorescence::None {
+            return known;
+        }
         let least = self.follow(Start::from(known), self.edge_shape(), &LeastConcentration);
         if least.de2000 <= known.de2000.max(EXACT / 10.0) { least } else { known }
     }
