@@ -54,6 +54,11 @@ pub struct Goal {
 }
 
 impl Goal {
+    /// The metric of the distances.
+    pub fn metric(&self) -> Metric {
+        self.metric
+    }
+
     /// The color to be reached.
     pub fn xyz(&self) -> Xyz {
         self.xyz

@@ -6,8 +6,9 @@ use upglow::{Edge, Fluorescence, Material, Model, ModelOnGrid};
 use upglow_color::{Contract, Grid, LinearRgb, Xyz};
 
 use crate::job::Job;
+use crate::problem::Shape;
 use crate::starts::StartTable;
-use crate::sums::{Lanes, Sums};
+use crate::sums::{CLEAR, Lanes, Sums, lanes_from};
 use crate::{FitOptions, FitOptionsError, Method};
 
 /// Everything that fits under one contract, with one model, share.
@@ -98,6 +99,31 @@ impl Fitter {
     /// How often residuals and derivatives were evaluated so far, in all fits.
     pub fn evaluations(&self) -> u64 {
         self.evaluations.load(Ordering::Relaxed)
+    }
+
+    /// The color of a material, by the sums of the fit.
+    pub(crate) fn color(&self, reflectance: Edge, fluorescence: Fluorescence) -> Xyz {
+        let parabola = Shape::Free.numbers(reflectance);
+        let (absorbed, emitted) = match (fluorescence, self.model.model()) {
+            (Fluorescence::Dyes { first, weight, concentration: c }, Model::Dyes(dyes)) => {
+                let [a, b] = [first, dyes.partner(first)].map(|dye| &self.dye_lanes[dye]);
+                let absorbed = lanes_from(|i| c * ((1.0 - weight) * a[i] + weight * b[i]));
+                (absorbed, self.model.emitted_by_dyes(dyes, first, weight).color)
+            }
+            (
+                Fluorescence::Analytic { emission_peak_nm, stokes_shift_nm, concentration: c },
+                Model::Analytic(bells),
+            ) => {
+                let center_nm = emission_peak_nm - stokes_shift_nm;
+                let [a, _] = self.sums.sample(|nm| bells.absorption(center_nm, nm));
+                let emitted = self.model.emitted_by_bells(bells, emission_peak_nm, stokes_shift_nm);
+                (lanes_from(|i| c * a[i]), emitted.color)
+            }
+            _ => (CLEAR, [0.0; 3]),
+        };
+        let reflected = self.sums.reflect(parabola, &absorbed, []).color;
+        let c = fluorescence.concentration();
+        Xyz([0, 1, 2].map(|k| reflected[k] + c * emitted[k]))
     }
 
     pub(crate) fn count(&self, evaluations: usize) {

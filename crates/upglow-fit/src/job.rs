@@ -39,11 +39,13 @@ impl Job<'_> {
             c if c > 0.0 => fluorescence,
             _ => Fluorescence::None,
         };
-        let mut fit = Fit { reflectance, fluorescence, distance: 0.0, de2000: 0.0 };
-        let color = self.fitter.model.color(fit.material());
-        fit.distance = self.goal.distance(color);
-        fit.de2000 = self.goal.under(Metric::De2000).distance(color);
-        fit
+        let color = self.fitter.color(reflectance, fluorescence);
+        let de2000 = self.goal.under(Metric::De2000).distance(color);
+        let distance = match self.goal.metric() {
+            Metric::De2000 => de2000,
+            _ => self.goal.distance(color),
+        };
+        Fit { reflectance, fluorescence, distance, de2000 }
     }
 
     /// The coordinates in which the slope limit is a bound.

@@ -1,5 +1,8 @@
 //! Where fits start: a table of materials at the slope limit, and the ones nearest to a color.
 
+use std::ops::Range;
+
+use fearless_simd::{Level, Simd, dispatch};
 use upglow::{AnalyticModel, DyeModel, Edge, Fluorescence, Model, ModelOnGrid};
 use upglow_color::{Goal, Lab, Xyz, ciede2000_residuals, lab_from_xyz};
 
@@ -27,13 +30,15 @@ impl From<Fit> for Start {
 pub(crate) struct StartTable {
     shapes: Vec<Edge>,
     entries: Vec<Entry>,
-    /// First entry of each bucket, and the end.
+    /// CIELAB of each entry, `[L a b][entry]`.
+    lab: [Vec<f32>; 3],
+    level: Level,
+    /// First entry of each bucket, and the end; all multiples of [`WIDTH`].
     buckets: Vec<usize>,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Entry {
-    lab: [f32; 3],
     shape: u32,
     fluorescence: Fluorescence,
 }
@@ -71,7 +76,7 @@ impl StartTable {
         let shapes = shapes(slope_limit_per_nm);
         let (variants, absorbers) = variants(model, sums);
         let white = model.colorimetry().white();
-        let mut sorted: Vec<(usize, Entry)> = Vec::new();
+        let mut sorted: Vec<(usize, Entry, Lab)> = Vec::new();
         let per_kind = shapes.len().div_ceil(PASSIVE_BUCKETS);
         for (index, &shape) in (0..).zip(&shapes) {
             let r = sums.reflectance(Shape::Free.numbers(shape));
@@ -80,21 +85,41 @@ impl StartTable {
                 absorbers.iter().map(|a| sums.integrate(|i| r[i] * a[i])).collect();
             for variant in &variants {
                 let color = variant.color(reflected, &taken);
-                let Lab { l, a, b } = lab_from_xyz(Xyz(color), white);
-                let lab = [l, a, b].map(to_single);
+                let lab = lab_from_xyz(Xyz(color), white);
                 let fluorescence = variant.fluorescence;
                 let bucket = match fluorescence {
                     Fluorescence::None => index as usize / per_kind,
                     _ => variant.bucket,
                 };
-                sorted.push((bucket, Entry { lab, shape: index, fluorescence }));
+                sorted.push((bucket, Entry { shape: index, fluorescence }, lab));
             }
         }
-        sorted.sort_by_key(|(bucket, _)| *bucket);
-        let count = sorted.last().map_or(0, |(bucket, _)| bucket + 1);
-        let first = |bucket: usize| sorted.partition_point(|(b, _)| *b < bucket);
-        let buckets = (0..=count).map(first).collect();
-        Self { shapes, entries: sorted.into_iter().map(|(_, entry)| entry).collect(), buckets }
+        sorted.sort_by_key(|(bucket, ..)| *bucket);
+        let mut table = Self {
+            shapes,
+            entries: Vec::new(),
+            lab: [Vec::new(), Vec::new(), Vec::new()],
+            level: Level::new(),
+            buckets: vec![0],
+        };
+        for bucket in sorted.chunk_by(|(a, ..), (b, ..)| a == b) {
+            table.add_bucket(bucket);
+        }
+        table
+    }
+
+    /// Adds a bucket and fills it up to whole vectors with entries that are near to nothing.
+    fn add_bucket(&mut self, bucket: &[(usize, Entry, Lab)]) {
+        const NOWHERE: Lab = Lab { l: f64::INFINITY, a: 0.0, b: 0.0 };
+        let filler = (0, Entry { shape: 0, fluorescence: Fluorescence::None }, NOWHERE);
+        let fill = bucket.len().next_multiple_of(WIDTH) - bucket.len();
+        for (_, entry, lab) in bucket.iter().chain(std::iter::repeat_n(&filler, fill)) {
+            self.entries.push(*entry);
+            for (values, value) in self.lab.iter_mut().zip([lab.l, lab.a, lab.b]) {
+                values.push(to_single(value));
+            }
+        }
+        self.buckets.push(self.entries.len());
     }
 
     /// The nearest start of each bucket, nearest first.
@@ -102,49 +127,77 @@ impl StartTable {
     /// Near means CIEDE2000 as it is around the goal, a quadratic form: that finds the same starts
     /// as the full formula and costs a tenth.
     pub(crate) fn nearest(&self, goal: &Goal) -> Vec<Start> {
-        let form = metric_at(goal);
-        let Lab { l, a, b } = goal.lab();
-        let center = [l, a, b].map(to_single);
-        let mut best: Vec<(f32, &Entry)> = self
-            .buckets
-            .windows(2)
-            .filter_map(|range| nearest_of(&self.entries[range[0]..range[1]], center, &form))
-            .collect();
+        let form = Form::around(goal);
+        let mut best: Vec<(f32, usize)> = Vec::with_capacity(self.buckets.len());
+        dispatch!(self.level, simd => simd.vectorize(
+            #[inline(always)]
+            || {
+                for range in self.buckets.windows(2) {
+                    best.extend(self.nearest_of(range[0]..range[1], &form));
+                }
+            },
+        ));
         best.sort_by(|x, y| x.0.total_cmp(&y.0));
-        let start = |(_, entry): (f32, &Entry)| Start {
-            reflectance: self.shapes[entry.shape as usize],
-            fluorescence: entry.fluorescence,
+        let start = |(_, index): (f32, usize)| Start {
+            reflectance: self.shapes[self.entries[index].shape as usize],
+            fluorescence: self.entries[index].fluorescence,
         };
         best.into_iter().map(start).collect()
     }
+
+    /// The entry of a bucket where the form is least, and the form there; the first such entry.
+    #[inline(always)]
+    fn nearest_of(&self, bucket: Range<usize>, form: &Form) -> Option<(f32, usize)> {
+        let [l, a, b] = self.lab.each_ref().map(|v| v[bucket.clone()].as_chunks::<WIDTH>().0);
+        let mut least = [f32::INFINITY; WIDTH];
+        let mut block_of = [0_u32; WIDTH];
+        for (block, ((l, a), b)) in (0_u32..).zip(l.iter().zip(a).zip(b)) {
+            for k in 0..WIDTH {
+                let at = form.at(l[k], a[k], b[k]);
+                let is_less = at < least[k];
+                least[k] = if is_less { at } else { least[k] };
+                block_of[k] = if is_less { block } else { block_of[k] };
+            }
+        }
+        let places = least.into_iter().zip(block_of).enumerate();
+        let (at, index) = places
+            .map(|(k, (at, block))| (at, block as usize * WIDTH + k))
+            .min_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)))?;
+        at.is_finite().then_some((at, bucket.start + index))
+    }
 }
 
-/// The residuals' derivatives by Lab at the goal itself.
-fn metric_at(goal: &Goal) -> [[f32; 3]; 3] {
-    let (_, jacobian) = ciede2000_residuals(goal.lab(), goal.lab());
-    jacobian.0.map(|row| row.map(to_single))
-}
+/// How many entries are looked at side by side.
+const WIDTH: usize = 16;
 
-/// The entry of the smallest form; the first one where several are equal.
-fn nearest_of<'e>(
-    entries: &'e [Entry],
+/// CIEDE2000 squared as it is around a color: a quadratic form in Lab.
+struct Form {
     center: [f32; 3],
-    form: &[[f32; 3]; 3],
-) -> Option<(f32, &'e Entry)> {
-    let distance = |entry: &Entry| {
-        let d = [0, 1, 2].map(|k| entry.lab[k] - center[k]);
-        let row = |r: &[f32; 3]| r[0] * d[0] + r[1] * d[1] + r[2] * d[2];
-        form.iter().map(row).map(|v| v * v).sum::<f32>()
-    };
-    let mut best = None;
-    let mut least = f32::INFINITY;
-    for entry in entries {
-        let found = distance(entry);
-        if found < least {
-            (least, best) = (found, Some((found, entry)));
+    /// Derivative of the first residual by L.
+    by_l: f32,
+    /// Derivatives of the second and third by a and b.
+    by_ab: [[f32; 2]; 2],
+}
+
+impl Form {
+    fn around(goal: &Goal) -> Self {
+        let Lab { l, a, b } = goal.lab();
+        let (_, jacobian) = ciede2000_residuals(goal.lab(), goal.lab());
+        let [[by_l, ..], [_, second @ ..], [_, third @ ..]] = jacobian.0;
+        Self {
+            center: [l, a, b].map(to_single),
+            by_l: to_single(by_l),
+            by_ab: [second, third].map(|row| row.map(to_single)),
         }
     }
-    best
+
+    #[inline(always)]
+    fn at(&self, l: f32, a: f32, b: f32) -> f32 {
+        let [l0, a0, b0] = self.center;
+        let (dl, da, db) = (self.by_l * (l - l0), a - a0, b - b0);
+        let [second, third] = self.by_ab.map(|row| row[0] * da + row[1] * db);
+        dl * dl + second * second + third * third
+    }
 }
 
 impl Variant {

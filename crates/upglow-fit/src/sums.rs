@@ -1,5 +1,7 @@
 //! The sums over wavelength behind every residual, with their derivatives.
 
+use fearless_simd::prelude::*;
+use fearless_simd::{Level, dispatch, f64x4};
 use upglow::ModelOnGrid;
 
 use crate::parabola::{Parabola, scaled};
@@ -9,7 +11,8 @@ pub(crate) type Lanes = [f64; LANES];
 
 /// 360, 365 … 830 nm are 95 samples of the 5 nm grid.
 const LANES: usize = 96;
-/// How many sums run side by side; fixed, so that the order of additions is too.
+/// How many sums run side by side. It is the same on every machine, and no product is fused with a
+/// sum, so the bits of a result are the same too.
 const WIDTH: usize = 4;
 
 /// Weights and wavelengths of the sums.
@@ -19,6 +22,7 @@ pub(crate) struct Sums {
     weights: [Lanes; 3],
     wavelengths_nm: Lanes,
     first: usize,
+    level: Level,
 }
 
 /// What a reflectance shows through an absorber, and derivatives.
@@ -47,6 +51,7 @@ impl Sums {
             weights: [[0.0; LANES]; 3],
             wavelengths_nm: [0.0; LANES],
             first,
+            level: Level::new(),
         };
         assert!(weights.len() - first <= LANES, "fits run on the 5 nm grid");
         for (i, (w, &nm)) in weights.iter().zip(model.wavelengths_nm()).skip(first).enumerate() {
@@ -94,38 +99,48 @@ impl Sums {
         absorbed: &Lanes,
         others: [&Lanes; K],
     ) -> Reflected<K> {
-        let [q0, q1, q2] = parabola;
-        let mut color = [[0.0; WIDTH]; 3];
-        let mut by = [[[0.0; WIDTH]; 3]; 3];
-        let mut seen = [[[0.0; WIDTH]; 3]; K];
-        for start in (0..LANES).step_by(WIDTH) {
-            let mut r = [0.0; WIDTH];
-            let mut slope = [[0.0; WIDTH]; 3];
-            for l in 0..WIDTH {
-                let t = self.t[start + l];
-                let x = q0 + t * (q1 + t * q2);
-                let inverse = 1.0 / (1.0 + x * x).sqrt();
-                r[l] = 0.5 + 0.5 * x * inverse;
-                let through = 1.0 - absorbed[start + l];
-                let d = 0.5 * inverse * inverse * inverse * through;
-                slope[0][l] = d;
-                slope[1][l] = d * t;
-                slope[2][l] = d * t * t;
-            }
+        dispatch!(self.level, simd => simd.vectorize(
+            #[inline(always)]
+            || self.reflect_in_vectors(simd, parabola, absorbed, others),
+        ))
+    }
+
+    /// [`Sums::reflect`], compiled once for each kind of vectors.
+    #[inline(always)]
+    fn reflect_in_vectors<S: Simd, const K: usize>(
+        &self,
+        simd: S,
+        parabola: Parabola,
+        absorbed: &Lanes,
+        others: [&Lanes; K],
+    ) -> Reflected<K> {
+        let vector = |lanes: &Lanes, at: usize| f64x4::from_slice(simd, &lanes[at..at + WIDTH]);
+        let [q0, q1, q2] = parabola.map(|q| f64x4::splat(simd, q));
+        let (half, one) = (f64x4::splat(simd, 0.5), f64x4::splat(simd, 1.0));
+        let zero = f64x4::splat(simd, 0.0);
+        let mut color = [zero; 3];
+        let mut by = [[zero; 3]; 3];
+        let mut seen = [[zero; 3]; K];
+        for at in (0..LANES).step_by(WIDTH) {
+            let t = vector(&self.t, at);
+            let x = q0 + t * (q1 + t * q2);
+            let inverse = one / (one + x * x).sqrt();
+            let half_inverse = half * inverse;
+            let r = half + x * half_inverse;
+            let through = one - vector(absorbed, at);
+            let shown = r * through;
+            let slope = half_inverse * inverse * inverse * through;
+            let slope_t = slope * t;
+            let slopes = [slope, slope_t, slope_t * t];
             for k in 0..3 {
-                let w = &self.weights[k][start..start + WIDTH];
-                for l in 0..WIDTH {
-                    color[k][l] += w[l] * r[l] * (1.0 - absorbed[start + l]);
-                }
+                let w = vector(&self.weights[k], at);
+                color[k] += w * shown;
                 for m in 0..3 {
-                    for l in 0..WIDTH {
-                        by[m][k][l] += w[l] * slope[m][l];
-                    }
+                    by[m][k] += w * slopes[m];
                 }
+                let w_r = w * r;
                 for (seen, other) in seen.iter_mut().zip(others) {
-                    for l in 0..WIDTH {
-                        seen[k][l] += w[l] * r[l] * other[start + l];
-                    }
+                    seen[k] += w_r * vector(other, at);
                 }
             }
         }
@@ -137,7 +152,8 @@ impl Sums {
     }
 }
 
-fn total(lanes: [f64; WIDTH]) -> f64 {
+#[inline(always)]
+fn total<S: Simd>(lanes: f64x4<S>) -> f64 {
     (lanes[0] + lanes[1]) + (lanes[2] + lanes[3])
 }
 
