@@ -170,6 +170,27 @@ mod tests {
     }
 
     #[test]
+    fn whites_have_the_published_chromaticities() {
+        // `cie015`, tables T.3 and T.8.1: five printed digits, of sums over 360 to 830 nm by 1 nm.
+        const PUBLISHED: [(&str, [f64; 2]); 4] = [
+            ("D65", [0.312_72, 0.329_03]),
+            ("D55", [0.332_43, 0.347_44]),
+            ("D50", [0.345_67, 0.358_51]),
+            ("A", [0.447_58, 0.407_45]),
+        ];
+        // One unit of the last digit: the tables sum a power that is rounded to six digits.
+        const PRINTED_DIGITS: f64 = 1.5e-5;
+        for (name, expected) in PUBLISHED {
+            let illuminant = Illuminant::named(name).unwrap();
+            let contract = crate::Contract { illuminant, ..crate::Contract::default() };
+            let white = contract.on(Grid::FINE).white().chromaticity().unwrap();
+            for k in 0..2 {
+                assert!((white[k] - expected[k]).abs() < PRINTED_DIGITS, "{name} {white:?}");
+            }
+        }
+    }
+
+    #[test]
     fn names_are_found_in_any_case_and_others_listed() {
         assert_eq!(Illuminant::named("d50").unwrap().name(), "D50");
         assert_eq!(

@@ -200,7 +200,7 @@ impl<const M: usize, const N: usize> Point<M, N> {
             }
             matrix[v][v] += damping * matrix[v][v] + NO_EFFECT;
         }
-        solve_cholesky(matrix, right)
+        solve_positive(matrix, right)
     }
 
     /// The cost at `next` if the residuals were linear.
@@ -214,26 +214,28 @@ impl<const M: usize, const N: usize> Point<M, N> {
     }
 }
 
-/// Solves a symmetric positive definite system given by its lower triangle.
-fn solve_cholesky<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N]) -> Option<[f64; N]> {
-    for i in 0..N {
-        for k in 0..=i {
-            let rest = a[i][k] - (0..k).map(|l| a[i][l] * a[k][l]).sum::<f64>();
-            if i == k {
-                if rest <= 0.0 || rest.is_nan() {
-                    return None;
-                }
-                a[i][i] = rest.sqrt();
-            } else {
-                a[i][k] = rest / a[k][k];
+/// Solves a symmetric positive definite system given by its lower triangle, as L·D·Lᵀ.
+fn solve_positive<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N]) -> Option<[f64; N]> {
+    let mut inverse_pivots = [0.0; N];
+    for k in 0..N {
+        let pivot = a[k][k];
+        if pivot <= 0.0 || pivot.is_nan() {
+            return None;
+        }
+        inverse_pivots[k] = 1.0 / pivot;
+        for i in k + 1..N {
+            let factor = a[i][k] * inverse_pivots[k];
+            for j in k + 1..=i {
+                a[i][j] -= factor * a[j][k];
             }
+            b[i] -= factor * b[k];
         }
     }
-    for i in 0..N {
-        b[i] = (b[i] - (0..i).map(|l| a[i][l] * b[l]).sum::<f64>()) / a[i][i];
-    }
     for i in (0..N).rev() {
-        b[i] = (b[i] - (i + 1..N).map(|l| a[l][i] * b[l]).sum::<f64>()) / a[i][i];
+        for l in i + 1..N {
+            b[i] -= a[l][i] * b[l];
+        }
+        b[i] *= inverse_pivots[i];
     }
     Some(b)
 }

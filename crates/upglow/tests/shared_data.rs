@@ -1,0 +1,42 @@
+//! Algorithm 1 against computed vectors, where the folder that holds them is at hand.
+
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
+
+use std::path::PathBuf;
+
+use upglow::Features;
+
+/// The vectors are printed with six digits for the features they start from, so that is how well
+/// they determine what follows; coefficients near z² times the curvature lose more.
+const PRINTED_DIGITS: f64 = 1e-4;
+
+#[test]
+fn algorithm_1_gives_the_reference_coefficients_and_spectra() {
+    let file = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../../shared/data/reference/algorithm1_vectors.csv"
+    );
+    let Ok(text) = std::fs::read_to_string(PathBuf::from(file)) else {
+        eprintln!(
+            "skipped: algorithm_1_gives_the_reference_coefficients_and_spectra \
+             (no ../shared/data/reference/algorithm1_vectors.csv)"
+        );
+        return;
+    };
+    let mut rows = 0;
+    for line in text.lines().skip(1) {
+        let v: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+        let features = Features { shift_nm: v[0], width_nm: v[1], slope_per_nm: v[2] };
+        let vertex = features.to_vertex().unwrap();
+        let sigmoid = vertex.to_sigmoid();
+        let found = [sigmoid.c0, sigmoid.c1, sigmoid.c2, vertex.peak];
+        for (found, expected) in found.iter().zip(&v[3..7]) {
+            assert!((found - expected).abs() <= PRINTED_DIGITS * expected.abs(), "{line}: {found}");
+        }
+        for (nm, expected) in [380.0, 460.0, 550.0, 640.0, 780.0].into_iter().zip(&v[7..12]) {
+            assert!((vertex.at(nm) - expected).abs() <= PRINTED_DIGITS, "{line}: {nm} nm");
+        }
+        rows += 1;
+    }
+    assert!(rows >= 100, "{rows}");
+}
