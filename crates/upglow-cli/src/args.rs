@@ -90,8 +90,8 @@ pub(crate) struct BuildArgs {
     /// Greatest slope of any reflectance, 0.0001 to 0.2 per nm, or none
     #[arg(long, default_value = "0.01", value_name = "SLOPE|none", help_heading = "Fit")]
     pub(crate) slope_max_per_nm: SlopeLimit,
-    /// How to search: search (ours), seed or seed-features (the seed paper's, moving coefficients
-    /// or features)
+    /// How to search: search (ours), exhaustive (slower, its yardstick), seed or seed-features (the
+    /// seed paper's, moving coefficients or features)
     #[arg(long, default_value = "search", value_name = "NAME", help_heading = "Fit")]
     pub(crate) method: Method,
     /// How often a node that missed its color tries its neighbors' materials [default: 2, and 4

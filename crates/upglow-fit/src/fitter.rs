@@ -147,6 +147,7 @@ impl Fitter {
         let job = self.job(self.model.colorimetry().xyz_from_rgb(rgb));
         Ok(job.gray().unwrap_or_else(|| match self.options.method {
             Method::Search => job.search(),
+            Method::Exhaustive => job.search_exhaustively(),
             Method::Seed(parameters) => job.seed_first(parameters),
         }))
     }
@@ -155,7 +156,7 @@ impl Fitter {
     pub(crate) fn improve(&self, rgb: LinearRgb, known: Fit, neighbors: &[Fit]) -> Fit {
         let job = self.job(self.model.colorimetry().xyz_from_rgb(rgb));
         match self.options.method {
-            Method::Search => job.improve(known, neighbors),
+            Method::Search | Method::Exhaustive => job.improve(known, neighbors),
             Method::Seed(parameters) => job.seed_again(parameters, known, neighbors),
         }
     }

@@ -26,6 +26,8 @@ pub enum Method {
     /// fluorescence that shows the color.
     #[default]
     Search,
+    /// As `Search`, but following a hundred starts and more to their end: the yardstick for it.
+    Exhaustive,
     /// The seed paper's: from gray, then from the neighbors' materials, through all pairs of dyes.
     ///
     /// # Source
@@ -48,7 +50,7 @@ impl Method {
     /// The sweeps that this way of searching needs: two for ours, four as the paper has them.
     pub const fn default_sweeps(self) -> u32 {
         match self {
-            Self::Search => 2,
+            Self::Search | Self::Exhaustive => 2,
             Self::Seed(_) => 4,
         }
     }
@@ -58,6 +60,7 @@ impl fmt::Display for Method {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Search => "search",
+            Self::Exhaustive => "exhaustive",
             Self::Seed(Parameters::Coefficients) => "seed",
             Self::Seed(Parameters::Features) => "seed-features",
         })
@@ -66,7 +69,7 @@ impl fmt::Display for Method {
 
 /// A word that names no method.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("unknown method {found:?}, expected search, seed or seed-features")]
+#[error("unknown method {found:?}, expected search, exhaustive, seed or seed-features")]
 pub struct UnknownMethod {
     /// The word given.
     pub found: String,
@@ -76,10 +79,15 @@ impl FromStr for Method {
     type Err = UnknownMethod;
 
     fn from_str(name: &str) -> Result<Self, Self::Err> {
-        [Self::Search, Self::Seed(Parameters::Coefficients), Self::Seed(Parameters::Features)]
-            .into_iter()
-            .find(|method| method.to_string() == name)
-            .ok_or_else(|| UnknownMethod { found: name.into() })
+        [
+            Self::Search,
+            Self::Exhaustive,
+            Self::Seed(Parameters::Coefficients),
+            Self::Seed(Parameters::Features),
+        ]
+        .into_iter()
+        .find(|method| method.to_string() == name)
+        .ok_or_else(|| UnknownMethod { found: name.into() })
     }
 }
 

@@ -23,6 +23,10 @@ const NEARLY_WITHIN: (f64, f64) = (1.5, 2.0);
 /// best known, ten leave 7.
 const STARTS_FOLLOWED: usize = 10;
 
+/// How many starts of each bucket the exhaustive search follows: 192 in all with eight dyes. Forty
+/// of each find nothing on 500 nodes of ACEScg that twelve miss by 0.001 ΔE00.
+const EXHAUSTIVE_STARTS: usize = 12;
+
 /// How many neighbors' materials are followed.
 const NEIGHBORS_FOLLOWED: usize = 2;
 
@@ -55,6 +59,20 @@ impl Job<'_> {
                 return self.with_least_fluorescence(found);
             }
             best = Some(nearer(best, found));
+        }
+        best.expect("there is at least one start")
+    }
+
+    /// The best that many starts lead to: the yardstick for [`Job::search`].
+    pub(crate) fn search_exhaustively(&self) -> Fit {
+        let mut best = self.without_fluorescence();
+        if let Some(passive) = best
+            && passive.de2000 <= EXACT
+        {
+            return passive;
+        }
+        for start in self.fitter.starts.nearest_of_each(&self.goal, EXHAUSTIVE_STARTS) {
+            best = Some(nearer(best, self.lead_on(start)));
         }
         best.expect("there is at least one start")
     }

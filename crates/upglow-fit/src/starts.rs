@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use fearless_simd::{Level, Simd, dispatch};
 use upglow::{AnalyticModel, DyeModel, Edge, Fluorescence, Model, ModelOnGrid};
-use upglow_color::{Goal, Lab, Xyz, ciede2000_residuals, lab_from_xyz};
+use upglow_color::{Goal, Lab, Xyz, ciede2000, ciede2000_residuals, lab_from_xyz};
 
 use crate::Fit;
 use crate::parabola::MIDDLE_NM;
@@ -138,11 +138,29 @@ impl StartTable {
             },
         ));
         best.sort_by(|x, y| x.0.total_cmp(&y.0));
-        let start = |(_, index): (f32, usize)| Start {
-            reflectance: self.shapes[self.entries[index].shape as usize],
-            fluorescence: self.entries[index].fluorescence,
+        best.into_iter().map(|(_, index)| self.start(index)).collect()
+    }
+
+    /// The nearest few starts of each bucket, by true CIEDE2000.
+    pub(crate) fn nearest_of_each(&self, goal: &Goal, count: usize) -> Vec<Start> {
+        let distance = |index: usize| {
+            let [l, a, b] = self.lab.each_ref().map(|v| f64::from(v[index]));
+            let finite = l.is_finite();
+            if finite { ciede2000(goal.lab(), Lab { l, a, b }) } else { f64::INFINITY }
         };
-        best.into_iter().map(start).collect()
+        let of_bucket = |range: &[usize]| {
+            let mut near: Vec<(f64, usize)> =
+                (range[0]..range[1]).map(|index| (distance(index), index)).collect();
+            near.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
+            near.truncate(count);
+            near.into_iter().filter(|(at, _)| at.is_finite()).map(|(_, index)| self.start(index))
+        };
+        self.buckets.windows(2).flat_map(of_bucket).collect()
+    }
+
+    fn start(&self, index: usize) -> Start {
+        let Entry { shape, fluorescence } = self.entries[index];
+        Start { reflectance: self.shapes[shape as usize], fluorescence }
     }
 
     /// The entry of a bucket where the form is least, and the form there; the first such entry.
