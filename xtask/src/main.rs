@@ -1,4 +1,4 @@
-//! The project's own commands: `cargo xtask tables` and `cargo xtask check`.
+//! The project's own commands: `cargo xtask tables`, `cargo xtask check` and `cargo xtask bench`.
 //!
 //! `tables` turns `tables/*.csv` into committed Rust; `check` is the gate, the same on every
 //! machine and in `.ci/run`.
@@ -6,6 +6,7 @@
 use std::path::Path;
 use std::process::ExitCode;
 
+mod bench;
 mod check;
 mod layers;
 mod readme;
@@ -13,7 +14,8 @@ mod tables;
 
 const USAGE: &str = "\
 usage: cargo xtask tables          write crates/upglow-color/src/tables from tables/*.csv
-       cargo xtask check [--slow]  run every check; --slow adds the tests named slow_*";
+       cargo xtask check [--slow]  run every check; --slow adds the tests named slow_*
+       cargo xtask bench           run every bench and write docs/PERFORMANCE.md";
 
 /// Exit status on bad usage; 1 is a check that failed.
 const BAD_USAGE: u8 = 2;
@@ -23,6 +25,7 @@ fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();
     match args.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["tables"] => tables(root),
+        ["bench"] => bench::run(root),
         ["check"] => check::run(root, check::Tests::Quick),
         ["check", "--slow"] => check::run(root, check::Tests::QuickAndSlow),
         _ => {

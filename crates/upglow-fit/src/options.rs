@@ -114,7 +114,9 @@ pub enum FitOptionsError {
     },
 }
 
-/// Below the first every color is nearly gray; beyond the second, sums over 5 nm see only a step.
+/// Below the first every color is nearly gray. Beyond the second, where a reflectance goes from 0 to 1
+/// within 5 nm, sums over 5 nm see only a step: at 1/nm they call 97.4 % of ACEScg shown instead of
+/// 97.3 %, and are wrong by 0.05 ΔE00 in the mean when summed over 1 nm.
 pub(crate) const SLOPE_RANGE_PER_NM: [f64; 2] = [1e-4, 0.2];
 
 impl FitOptions {

@@ -23,6 +23,9 @@ const NEARLY_WITHIN: (f64, f64) = (1.5, 2.0);
 /// best known, ten leave 7.
 const STARTS_FOLLOWED: usize = 10;
 
+/// How many start reflectances are followed where nothing may fluoresce.
+const PASSIVE_STARTS: usize = 3;
+
 /// How many starts of each bucket the exhaustive search follows: 192 in all with eight dyes. Forty
 /// of each find nothing on 500 nodes of ACEScg that twelve miss by 0.001 ΔE00.
 const EXHAUSTIVE_STARTS: usize = 12;
@@ -53,7 +56,11 @@ impl Job<'_> {
             return passive;
         }
         let starts = self.fitter.starts.nearest(&self.goal);
-        for start in starts.into_iter().take(STARTS_FOLLOWED) {
+        let followed = match self.fitter.model.model() {
+            Model::Reflectance => PASSIVE_STARTS,
+            _ => STARTS_FOLLOWED,
+        };
+        for start in starts.into_iter().take(followed) {
             let found = self.lead_on(start);
             if found.de2000 <= EXACT {
                 return self.with_least_fluorescence(found);

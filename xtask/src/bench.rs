@@ -1,0 +1,182 @@
+//! `cargo xtask bench`: runs the benches and writes what they say into docs/PERFORMANCE.md.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, ExitCode, Stdio};
+use std::time::{SystemTime, UNIX_EPOCH};
+
+/// One line of the table: what is measured, by which bench, and how fast it should be.
+struct Goal {
+    job: &'static str,
+    /// File, function and argument of the bench, joined by `/`.
+    bench: &'static str,
+    goal: &'static str,
+    peer: &'static str,
+}
+
+const GOALS: [Goal; 6] = [
+    Goal {
+        job: "build, defaults: 32³, eight dyes, ΔE00, slope limit",
+        bench: "build/default/32",
+        goal: "1.6 s",
+        peer: "the seed paper: 3 h 20 min on its machine",
+    },
+    Goal { job: "the same at 64³", bench: "build/default/64", goal: "12 s", peer: "" },
+    Goal { job: "the same at 32³ with `wide14`", bench: "build/wide14", goal: "3 s", peer: "" },
+    Goal {
+        job: "build, reflectance only, 32³ nodes",
+        bench: "build/reflectance",
+        goal: "0.2 s",
+        peer: "the next line",
+    },
+    Goal {
+        job: "crate `rgb2spec` 0.1.1: sRGB reflectance, 3·32³ nodes, one thread",
+        bench: "build/peer_rgb2spec_srgb",
+        goal: "",
+        peer: "",
+    },
+    Goal { job: "build, analytic fluorescence, 32³", bench: "build/analytic", goal: "", peer: "" },
+];
+
+/// A bench and its median, as printed.
+#[derive(Clone, Debug, PartialEq)]
+struct Measured {
+    bench: String,
+    median: String,
+}
+
+/// Runs every bench, prints the table and writes it.
+pub(crate) fn run(root: &Path) -> ExitCode {
+    let mut command = Command::new("cargo");
+    command.args(["bench", "--quiet", "--workspace", "--benches"]).current_dir(root);
+    let output = match command.stderr(Stdio::inherit()).output() {
+        Ok(output) if output.status.success() => output.stdout,
+        Ok(output) => {
+            println!("{}\nbench: cargo bench failed", String::from_utf8_lossy(&output.stdout));
+            return ExitCode::FAILURE;
+        }
+        Err(error) => {
+            println!("bench: cargo did not start: {error}");
+            return ExitCode::FAILURE;
+        }
+    };
+    let measured = parse(&String::from_utf8_lossy(&output));
+    let page = page(&measured, &machine(), &today());
+    println!("{page}");
+    let path = root.join("docs/PERFORMANCE.md");
+    match fs::write(&path, page) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            println!("bench: {}: {error}", path.display());
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Every leaf of divan's trees: `file/function/argument` and its median.
+fn parse(text: &str) -> Vec<Measured> {
+    let mut path: Vec<String> = Vec::new();
+    let mut found = Vec::new();
+    for line in text.lines() {
+        let is_tree = |c: char| "│├╰─ ".contains(c);
+        let depth = line.chars().take_while(|&c| is_tree(c)).count() / 3;
+        let rest: String = line.chars().skip_while(|&c| is_tree(c)).collect();
+        let cells: Vec<&str> = rest.split('│').map(str::trim).collect();
+        if cells.len() < 6 {
+            continue;
+        }
+        let (name, fastest) = cells[0].split_once("  ").unwrap_or((cells[0], ""));
+        path.truncate(depth);
+        path.push(name.trim().to_owned());
+        let has_figures = depth > 0 && !fastest.trim().is_empty();
+        if has_figures {
+            found.push(Measured { bench: path.join("/"), median: cells[2].to_owned() });
+        }
+    }
+    found
+}
+
+fn page(measured: &[Measured], machine: &str, today: &str) -> String {
+    let mut page = format!(
+        "# Performance\n\nMedians from `cargo xtask bench`, which writes this page. Machine: \
+         {machine}. Date: {today}.\n\n| job | measured | goal | peer |\n| --- | --- | --- | --- |\n"
+    );
+    for goal in &GOALS {
+        let median = measured.iter().find(|m| m.bench == goal.bench);
+        let median = median.map_or("not measured", |m| &m.median);
+        writeln!(page, "| {} | {median} | {} | {} |", goal.job, goal.goal, goal.peer)
+            .expect("a string takes any text");
+    }
+    page.push_str("\nEvery bench:\n\n| bench | median |\n| --- | --- |\n");
+    for Measured { bench, median } in measured {
+        writeln!(page, "| `{bench}` | {median} |").expect("a string takes any text");
+    }
+    page
+}
+
+fn machine() -> String {
+    let info = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model = info.lines().find(|line| line.starts_with("model name"));
+    let model = model.and_then(|line| line.split(": ").nth(1)).unwrap_or("unknown processor");
+    let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    format!("{model}, {threads} threads")
+}
+
+/// The date in UTC, year-month-day.
+fn today() -> String {
+    let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |d| d.as_secs());
+    let [year, month, day] = civil_date(seconds / 86_400);
+    format!("{year}-{month:02}-{day:02}")
+}
+
+/// Year, month and day of a number of days since 1970-01-01.
+fn civil_date(mut days: u64) -> [u64; 3] {
+    let mut year = 1970;
+    let is_leap =
+        |year: u64| year.is_multiple_of(4) && !year.is_multiple_of(100) || year.is_multiple_of(400);
+    while days >= 365 + u64::from(is_leap(year)) {
+        days -= 365 + u64::from(is_leap(year));
+        year += 1;
+    }
+    let february = 28 + u64::from(is_leap(year));
+    let mut month = 1;
+    for length in [31, february, 31, 30, 31, 30, 31, 31, 30, 31, 30] {
+        if days < length {
+            break;
+        }
+        days -= length;
+        month += 1;
+    }
+    [year, month, days + 1]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn medians_are_found_in_a_tree_of_benches() {
+        let text = "Timer precision: 10 ns\n\
+            build          fastest │ slowest │ median │ mean │ samples │ iters\n\
+            ├─ default             │         │        │      │         │\n\
+            │  ├─ 32       1.1 s   │ 1.3 s   │ 1.2 s  │ 1 s  │ 3       │ 3\n\
+            │  ╰─ 64       9 s     │ 9 s     │ 9.5 s  │ 9 s  │ 3       │ 3\n\
+            ╰─ wide14      2 s     │ 2 s     │ 2.5 s  │ 2 s  │ 3       │ 3\n";
+        let found = parse(text);
+        let expected = [
+            ("build/default/32", "1.2 s"),
+            ("build/default/64", "9.5 s"),
+            ("build/wide14", "2.5 s"),
+        ];
+        let expected = expected.map(|(b, m)| Measured { bench: b.into(), median: m.into() });
+        assert_eq!(found, expected);
+    }
+
+    #[test]
+    fn dates_are_those_of_the_calendar() {
+        assert_eq!(civil_date(0), [1970, 1, 1]);
+        assert_eq!(civil_date(19_782), [2024, 2, 29]);
+        assert_eq!(civil_date(20_779), [2026, 11, 22]);
+    }
+}
