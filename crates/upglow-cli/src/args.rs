@@ -8,6 +8,7 @@ use clap::{Parser, Subcommand};
 use upglow::{Accounting, Cube, Interpolation, Mixing, QuantumYield};
 use upglow_color::{Adaptation, Metric};
 use upglow_fit::Method;
+use upglow_study::Display;
 
 /// RGB colors to physically valid spectral materials, with fluorescence where no reflectance shows
 /// the color.
@@ -36,6 +37,42 @@ pub(crate) enum Command {
     Color(ColorArgs),
     /// Write every node as a line of a CSV file
     Export(ExportArgs),
+    /// Draw the seed paper's eight figures from real computation, and two of ours; minutes
+    Figures(FiguresArgs),
+    /// Measure the seed paper's claims and print a report in Markdown; minutes
+    Reproduce(ReproduceArgs),
+}
+
+#[derive(Clone, Debug, clap::Args)]
+pub(crate) struct FiguresArgs {
+    /// Folder for the SVG and PNG files; made if it is not there
+    #[arg(long, default_value = "figures", value_name = "FOLDER")]
+    pub(crate) out: PathBuf,
+    /// Draw one figure only: 1 to 8 are the paper's, 9 and 10 ours
+    #[arg(long, value_name = "N")]
+    pub(crate) only: Option<u32>,
+    /// Colors: srgb (ACEScg numbers shown as sRGB, as in the paper) or correct (color-managed)
+    #[arg(long, default_value = "srgb", value_name = "NAME")]
+    pub(crate) display: Display,
+    /// Nodes along each axis of the cubes, 2 to 256; the paper has 32
+    #[arg(long, default_value = "32", value_name = "N", value_parser = resolution)]
+    pub(crate) resolution: usize,
+    /// Threads; the files do not depend on it [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = threads)]
+    pub(crate) threads: Option<NonZeroUsize>,
+}
+
+#[derive(Clone, Debug, clap::Args)]
+pub(crate) struct ReproduceArgs {
+    /// Write the report to this file too
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// Nodes along each axis of the cubes, 2 to 256; the paper has 32
+    #[arg(long, default_value = "32", value_name = "N", value_parser = resolution)]
+    pub(crate) resolution: usize,
+    /// Threads; the report does not depend on it [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = threads)]
+    pub(crate) threads: Option<NonZeroUsize>,
 }
 
 #[derive(Clone, Debug, clap::Args)]

@@ -4,7 +4,10 @@ mod build;
 mod color;
 mod color_report;
 mod export;
+mod figures;
 mod inspect;
+mod reproduce;
+mod study;
 mod summary;
 mod verify;
 
@@ -23,6 +26,8 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
         Command::Verify(verify) => verify::run(&verify, format, args.quiet),
         Command::Color(color) => color::run(&color, format),
         Command::Export(export) => export::run(&export, format),
+        Command::Figures(figures) => figures::run(&figures, format, args.quiet),
+        Command::Reproduce(reproduce) => reproduce::run(&reproduce, format, args.quiet),
     }
 }
 

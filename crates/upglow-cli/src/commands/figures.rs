@@ -1,0 +1,83 @@
+//! `upglow figures`: draws the seed paper's figures, and ours.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use serde::Serialize;
+use upglow_study::{Cubes, Figure, FigureOptions, StudyError, figures};
+
+use super::on_threads;
+use super::study::study_failure;
+use crate::args::FiguresArgs;
+use crate::failure::{Failure, io_message};
+use crate::files;
+use crate::output::{Format, Report};
+use crate::progress::Bar;
+
+/// Pixels of a PNG for each of the SVG's: 170 mm at 192 pixels to the inch.
+const PNG_SCALE: f32 = 2.0;
+
+#[derive(Clone, Debug, Serialize)]
+struct FiguresReport {
+    folder: String,
+    figures: Vec<FigureReport>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct FigureReport {
+    number: u32,
+    svg: String,
+    png: String,
+    caption: String,
+}
+
+pub(crate) fn run(args: &FiguresArgs, format: Format, quiet: bool) -> Result<(), Failure> {
+    std::fs::create_dir_all(&args.out).map_err(|error| {
+        let found = io_message(&error);
+        Failure::file(&args.out, format_args!("{found}, expected a folder to write in"))
+    })?;
+    files::check_output(&args.out.join("figure-01.svg"))?;
+    let options = FigureOptions { only: args.only, display: args.display };
+    let cubes = Cubes::new(args.resolution);
+    let bar = Bar::start(quiet);
+    let drawn = on_threads(args.threads, || figures(&cubes, &options, &bar))?;
+    bar.finish();
+    let drawn = drawn.map_err(|error| match error {
+        StudyError::UnknownFigure { .. } => Failure::option("--only", error),
+        error => study_failure(error),
+    })?;
+    let written = drawn.iter().map(|figure| write(args, figure)).collect::<Result<Vec<_>, _>>()?;
+    let folder = args.out.display().to_string();
+    format.print(&FiguresReport { folder, figures: written })
+}
+
+fn write(args: &FiguresArgs, figure: &Figure) -> Result<FigureReport, Failure> {
+    let path = |ending: &str| -> PathBuf { args.out.join(format!("{}.{ending}", figure.name)) };
+    let (svg, png) = (path("svg"), path("png"));
+    files::write(&svg, figure.svg.as_bytes())?;
+    files::write(&png, &figure.to_png(PNG_SCALE))?;
+    Ok(FigureReport {
+        number: figure.number,
+        svg: svg.display().to_string(),
+        png: png.display().to_string(),
+        caption: figure.caption.clone(),
+    })
+}
+
+impl Report for FiguresReport {
+    fn text(&self) -> String {
+        let mut text = String::new();
+        for figure in &self.figures {
+            // Writing to a string does not fail.
+            let _ =
+                writeln!(text, "Figure {}: {}\n{}\n", figure.number, figure.svg, figure.caption);
+        }
+        let _ = writeln!(
+            text,
+            "{} figures in {}, each as SVG and PNG",
+            self.figures.len(),
+            self.folder
+        );
+        text
+    }
+}
