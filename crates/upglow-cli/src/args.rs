@@ -51,8 +51,8 @@ pub(crate) struct FiguresArgs {
     /// Draw one figure only: 1 to 8 are the paper's, 9 and 10 ours
     #[arg(long, value_name = "N")]
     pub(crate) only: Option<u32>,
-    /// Colors: srgb (ACEScg numbers shown as sRGB, as in the paper) or correct (color-managed)
-    #[arg(long, default_value = "srgb", value_name = "NAME")]
+    /// Colors: as-srgb (ACEScg numbers shown as sRGB, as in the paper) or correct (color-managed)
+    #[arg(long, default_value = "as-srgb", value_name = "NAME")]
     pub(crate) display: Display,
     /// Nodes along each axis of the cubes, 2 to 256; the paper has 32
     #[arg(long, default_value = "32", value_name = "N", value_parser = resolution)]

@@ -1,7 +1,8 @@
 //! The cubes that figures and claims are taken from, each built once.
 
 use std::collections::HashMap;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
 
 use upglow::{AnalyticModel, Cube, DyeModel, DyeOptions, DyeSet, Model};
 use upglow_color::{Contract, Metric};
@@ -14,6 +15,11 @@ use crate::StudyError;
 pub enum StudyCube {
     /// Ours, with every default: eight dyes, CIEDE2000, our own search.
     Reference,
+    /// Ours under another color difference.
+    Search {
+        /// The color difference that is minimized.
+        metric: Metric,
+    },
     /// The paper's way: eight dyes, moving coefficients.
     Seed {
         /// The color difference that is minimized.
@@ -45,7 +51,7 @@ impl StudyCube {
     pub fn model(self) -> Result<Model, StudyError> {
         match self {
             Self::SeedAnalytic { .. } => Ok(Model::Analytic(AnalyticModel::default())),
-            Self::Reference | Self::Seed { .. } | Self::SeedFeatures => {
+            Self::Reference | Self::Search { .. } | Self::Seed { .. } | Self::SeedFeatures => {
                 let dyes = DyeSet::named("seed8")?;
                 Ok(Model::Dyes(DyeModel::new(dyes, DyeOptions::default())?))
             }
@@ -62,20 +68,26 @@ impl StudyCube {
         };
         match self {
             Self::Reference => FitOptions::default(),
+            Self::Search { metric } => FitOptions { metric, ..FitOptions::default() },
             Self::Seed { metric, sweeps } => seed(metric, sweeps, Parameters::Coefficients),
             Self::SeedFeatures => seed(Metric::De2000, PAPER_SWEEPS, Parameters::Features),
-            Self::SeedAnalytic { sweeps } => {
-                seed(Metric::De2000, sweeps, Parameters::Coefficients)
-            }
+            Self::SeedAnalytic { sweeps } => seed(Metric::De2000, sweeps, Parameters::Coefficients),
         }
     }
+}
+
+/// A cube, and how long it took.
+#[derive(Clone, Debug)]
+struct Built {
+    cube: Arc<Cube>,
+    time: Duration,
 }
 
 /// Cubes of one resolution, built when first asked for and kept.
 #[derive(Debug)]
 pub struct Cubes {
     resolution: usize,
-    built: Mutex<HashMap<StudyCube, Arc<Cube>>>,
+    built: Mutex<HashMap<StudyCube, Built>>,
 }
 
 impl Cubes {
@@ -99,17 +111,24 @@ impl Cubes {
     /// [`StudyError`] if the resolution is out of range or `watch` stopped the work.
     pub fn get(&self, which: StudyCube, watch: &dyn Watch) -> Result<Arc<Cube>, StudyError> {
         if let Some(known) = self.built().get(&which) {
-            return Ok(Arc::clone(known));
+            return Ok(Arc::clone(&known.cube));
         }
         // Not under the lock: a thread that waits for the others of its pool may be given a task
         // that asks for a cube too.
-        let model = which.model()?;
+        let (model, start) = (which.model()?, Instant::now());
         let cube =
             build_cube(&Contract::default(), &model, which.options(), self.resolution, watch)?;
-        Ok(Arc::clone(self.built().entry(which).or_insert_with(|| Arc::new(cube))))
+        let built = Built { cube: Arc::new(cube), time: start.elapsed() };
+        Ok(Arc::clone(&self.built().entry(which).or_insert(built).cube))
     }
 
-    fn built(&self) -> std::sync::MutexGuard<'_, HashMap<StudyCube, Arc<Cube>>> {
+    /// How long a cube took to build; `None` for one that was not asked for. Unlike all else here,
+    /// this is another number on every run.
+    pub fn build_time(&self, which: StudyCube) -> Option<Duration> {
+        self.built().get(&which).map(|built| built.time)
+    }
+
+    fn built(&self) -> MutexGuard<'_, HashMap<StudyCube, Built>> {
         self.built.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

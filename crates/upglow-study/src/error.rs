@@ -16,4 +16,12 @@ pub enum StudyError {
     /// The model cannot be made.
     #[error(transparent)]
     Model(#[from] ModelError),
+    /// There is no figure of this number.
+    #[error("figure {found}, expected 1 to {last}")]
+    UnknownFigure {
+        /// The number given.
+        found: u32,
+        /// The last figure's number.
+        last: usize,
+    },
 }

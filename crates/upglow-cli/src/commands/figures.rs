@@ -32,11 +32,9 @@ struct FigureReport {
 }
 
 pub(crate) fn run(args: &FiguresArgs, format: Format, quiet: bool) -> Result<(), Failure> {
-    std::fs::create_dir_all(&args.out).map_err(|error| {
-        let found = io_message(&error);
-        Failure::file(&args.out, format_args!("{found}, expected a folder to write in"))
-    })?;
-    files::check_output(&args.out.join("figure-01.svg"))?;
+    // The folder itself is made when there is something to put in it.
+    let probe = if args.out.is_dir() { args.out.join("figure.svg") } else { args.out.clone() };
+    files::check_output(&probe)?;
     let options = FigureOptions { only: args.only, display: args.display };
     let cubes = Cubes::new(args.resolution);
     let bar = Bar::start(quiet);

@@ -1,0 +1,159 @@
+//! The way from one reflectance to another, as colors.
+
+use upglow::{Features, Material, ModelOnGrid, Sigmoid};
+use upglow_color::{Lab, Xyz, ciede2000};
+
+use crate::field::Field;
+use crate::spread::Spread;
+
+/// How far the ways between some pairs of reflectances are from what one would wish.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ways {
+    /// Greatest ΔE00 from the mixture of the two spectra at the weights ¼, ½ and ¾.
+    pub(super) from_spectrum: Spread,
+    /// Longest of 16 steps over the mean step, in ΔE00; 1 is an even pace.
+    pub(super) pace: Spread,
+    /// Greatest deviation of the hue angle from an even turn between the ends, degrees.
+    pub(super) hue_deg: Spread,
+    /// Length of the way over the distance of its ends, in CIELAB; 1 is straight.
+    pub(super) detour: Spread,
+}
+
+/// What is interpolated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Means {
+    /// c0, c1, c2.
+    Coefficients,
+    /// Shift, width, slope.
+    Features,
+    /// The spectra themselves.
+    Spectra,
+}
+
+/// How many pairs are drawn.
+const PAIRS: usize = 2000;
+
+/// Any number will do; another draws other pairs.
+const SEED: u64 = 20;
+
+/// Chroma C*ab from which a color is called saturated, and lightness L* from which it is bright.
+const SATURATED: (f64, f64) = (30.0, 50.0);
+
+/// Steps of a way.
+const STEPS: usize = 16;
+
+/// Two reflectances.
+type Ends = [Sigmoid; 2];
+
+/// Random pairs of bright and saturated reflectances of a cube whose slopes have the same sign.
+pub(super) fn random_pairs(field: &Field) -> Vec<Ends> {
+    let cube = field.cube();
+    let usable: Vec<Sigmoid> = (0..cube.nodes().len())
+        .map(|node| cube.node_material(node).reflectance)
+        .filter(|&reflectance| {
+            is_vivid(lab(field.sums(), color(field.sums(), reflectance)))
+                && features(reflectance).is_some()
+        })
+        .collect();
+    if usable.is_empty() {
+        return Vec::new();
+    }
+    let mut state = SEED;
+    let mut draw = || usable[below(usable.len(), &mut state)];
+    let pairs = std::iter::repeat_with(|| [draw(), draw()]);
+    pairs.take(PAIRS).filter(|[p, q]| p != q && p.c0 * q.c0 > 0.0).collect()
+}
+
+/// Whether a color is bright and saturated.
+pub(super) fn is_vivid(color: Lab) -> bool {
+    let (chroma, lightness) = SATURATED;
+    color.l >= lightness && color.a.hypot(color.b) >= chroma
+}
+
+/// A number below `count`: the next of the `SplitMix64` sequence.
+#[expect(clippy::cast_possible_truncation, reason = "the remainder is below a usize")]
+fn below(count: usize, state: &mut u64) -> usize {
+    *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
+    let mut z = *state;
+    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    ((z ^ (z >> 31)) % count as u64) as usize
+}
+
+/// The ways between pairs of reflectances, by what is interpolated.
+pub(super) fn ways(sums: &ModelOnGrid, pairs: &[Ends], means: Means) -> Ways {
+    let paths: Vec<[Vec<Lab>; 2]> = pairs
+        .iter()
+        .map(|&ends| [means, Means::Spectra].map(|means| path(sums, ends, means)))
+        .collect();
+    Ways {
+        from_spectrum: Spread::of(paths.iter().map(|[path, truth]| {
+            let quarters = [STEPS / 4, STEPS / 2, 3 * STEPS / 4];
+            quarters.map(|i| ciede2000(truth[i], path[i])).into_iter().fold(0.0, f64::max)
+        })),
+        pace: Spread::of(paths.iter().map(|[path, _]| pace(path))),
+        hue_deg: Spread::of(paths.iter().map(|[path, _]| hue_deviation_deg(path))),
+        detour: Spread::of(paths.iter().map(|[path, _]| {
+            let length: f64 = path.windows(2).map(|step| step[0].de76(step[1])).sum();
+            length / path[0].de76(path[STEPS])
+        })),
+    }
+}
+
+fn pace(path: &[Lab]) -> f64 {
+    let steps = Spread::of(path.windows(2).map(|step| ciede2000(step[0], step[1])));
+    steps.max / steps.mean
+}
+
+/// The turn is the one that the way takes, so going the long way around is no deviation by itself.
+fn hue_deviation_deg(path: &[Lab]) -> f64 {
+    let mut hues: Vec<f64> = path.iter().map(|color| color.b.atan2(color.a).to_degrees()).collect();
+    for i in 1..hues.len() {
+        let step = hues[i] - hues[i - 1];
+        hues[i] -= 360.0 * (step / 360.0).round();
+    }
+    let (first, last) = (hues[0], hues[STEPS]);
+    let even = |i: usize| first + (last - first) * i as f64 / STEPS as f64;
+    hues.iter().enumerate().map(|(i, hue)| (hue - even(i)).abs()).fold(0.0, f64::max)
+}
+
+fn path(sums: &ModelOnGrid, [from, to]: Ends, means: Means) -> Vec<Lab> {
+    let ends = [from, to].map(|reflectance| color(sums, reflectance).0);
+    let at = |step: usize| {
+        let t = step as f64 / STEPS as f64;
+        let mix = |p: f64, q: f64| (1.0 - t) * p + t * q;
+        let mixed = |p: Sigmoid, q: Sigmoid| Sigmoid {
+            c0: mix(p.c0, q.c0),
+            c1: mix(p.c1, q.c1),
+            c2: mix(p.c2, q.c2),
+        };
+        match means {
+            Means::Spectra => Xyz([0, 1, 2].map(|k| mix(ends[0][k], ends[1][k]))),
+            Means::Coefficients => color(sums, mixed(from, to)),
+            Means::Features => color(sums, between_features(from, to, mix)),
+        }
+    };
+    (0..=STEPS).map(|step| lab(sums, at(step))).collect()
+}
+
+fn between_features(from: Sigmoid, to: Sigmoid, mix: impl Fn(f64, f64) -> f64) -> Sigmoid {
+    let [p, q] = [from, to].map(|end| features(end).expect("pairs have features"));
+    let mixed = Features {
+        shift_nm: mix(p.shift_nm, q.shift_nm),
+        width_nm: mix(p.width_nm, q.width_nm),
+        slope_per_nm: mix(p.slope_per_nm, q.slope_per_nm),
+    };
+    mixed.to_sigmoid().expect("slopes of the same sign do not cancel")
+}
+
+fn features(reflectance: Sigmoid) -> Option<Features> {
+    reflectance.to_vertex()?.to_features()
+}
+
+pub(super) fn color(sums: &ModelOnGrid, reflectance: Sigmoid) -> Xyz {
+    sums.color(Material::passive(reflectance))
+}
+
+pub(super) fn lab(sums: &ModelOnGrid, xyz: Xyz) -> Lab {
+    sums.colorimetry().lab_from_xyz(xyz)
+}

@@ -1,0 +1,153 @@
+//! Figure 10: what any material can show.
+
+use rayon::prelude::*;
+use upglow_color::{ColorSolid, Colorimetry, Contract, Grid, LinearRgb};
+
+use super::sheet::{Sheet, swatch};
+use super::{Figure, Studio, percent};
+use crate::StudyError;
+use crate::raster;
+use crate::svg::{Axis, Drawing, Frame, Rect, STANDINGS, Text, hex};
+
+/// The layers shown, in 31sts, and what is written above them.
+const BLUES: [(f64, &str); 5] =
+    [(0.0, "0"), (5.0, "5/31"), (15.0, "15/31"), (23.0, "23/31"), (31.0, "1")];
+const LETTERS: [&str; 6] = ["a", "b", "c", "d", "e", "f"];
+const NAMES: [&str; 3] = ["some reflectance", "only fluorescence", "no material"];
+/// Points of a layer's picture from node to node.
+const POINTS_PER_STEP: usize = 4;
+
+/// What it takes to show a color: a number of [`STANDINGS`].
+struct Limits {
+    colorimetry: Colorimetry,
+    reflectance: ColorSolid,
+    fluorescence: ColorSolid,
+}
+
+impl Limits {
+    fn new(contract: &Contract) -> Self {
+        let colorimetry = contract.on(Grid::FIT);
+        let reflectance = ColorSolid::reflectance(&colorimetry);
+        let fluorescence = ColorSolid::fluorescence(&colorimetry);
+        Self { colorimetry, reflectance, fluorescence }
+    }
+
+    fn standing(&self, rgb: LinearRgb) -> usize {
+        let color = self.colorimetry.xyz_from_rgb(rgb);
+        if self.reflectance.contains(color) {
+            0
+        } else if self.fluorescence.contains(color) {
+            1
+        } else {
+            2
+        }
+    }
+
+    /// Where the points of a layer stand, `[green from 1 to 0][red]`.
+    fn layer(&self, blue: f64, side: usize) -> Vec<usize> {
+        let last = (side - 1) as f64;
+        let at = |i: usize| [i % side, side - 1 - i / side].map(|k| k as f64 / last);
+        (0..side * side)
+            .into_par_iter()
+            .map(|i| {
+                let [red, green] = at(i);
+                self.standing(LinearRgb([red, green, blue]))
+            })
+            .collect()
+    }
+}
+
+/// Shares of reflectance, fluorescence and nothing.
+fn shares<'s>(standings: impl IntoIterator<Item = &'s usize>) -> [f64; 3] {
+    let mut counts = [0.0; 3];
+    standings.into_iter().for_each(|&standing| counts[standing] += 1.0);
+    let all: f64 = counts.iter().sum();
+    counts.map(|count| count / all)
+}
+
+pub(super) fn figure_10(studio: &Studio<'_>) -> Result<Figure, StudyError> {
+    let limits = Limits::new(&Contract::default());
+    let nodes = studio.cubes.resolution();
+    let side = POINTS_PER_STEP * (nodes - 1) + 1;
+    let sheet =
+        Sheet { gap_mm: 12.0, title_mm: 7.0, below_mm: 8.0, foot_mm: 15.0, ..Sheet::shared(3, 2) };
+    let mut drawing = Drawing::new(sheet.height_mm());
+    let mut parts = Vec::new();
+    for (i, (blue, name)) in BLUES.into_iter().enumerate() {
+        studio.go_on()?;
+        let standings = limits.layer(blue / 31.0, side);
+        let found = shares(&standings).map(percent);
+        let title = format!("[{}] *B* = {name}", LETTERS[i]);
+        draw_layer(&mut drawing, &sheet, i, &standings, &title);
+        parts.push(format!("B = {name}: {} / {} / {}", found[0], found[1], found[2]));
+    }
+    let layers: Vec<Vec<usize>> =
+        (0..nodes).map(|blue| limits.layer(blue as f64 / (nodes - 1) as f64, nodes)).collect();
+    draw_shares(&mut drawing, sheet.rect(1, 2), &layers);
+    let all = shares(layers.iter().flatten()).map(percent);
+    draw_legend(&mut drawing, &sheet, &all);
+    let caption = format!(
+        "What any material can show of ACEScg under D65, whatever the solver: some reflectance, \
+         only a fluorescent material that gives back at most one photon for each absorbed, at no \
+         shorter wavelength, or no material at all. (a–e) Layers of {side} × {side} colors; {} \
+         (reflectance / fluorescence / nothing). (f) Shares of the {nodes}² nodes of each layer; \
+         over all {nodes}³ nodes {}, {} and {}. At B = 0 all colors lie between the red and the \
+         green primary of AP1, a line outside the spectral locus; at B = 1 no \
+         reflectance but white gives back as much blue. These limits know no slope limit and no dyes.",
+        parts.join("; "),
+        all[0],
+        all[1],
+        all[2],
+    );
+    Ok(Figure::new(10, "reachability", drawing, caption))
+}
+
+fn draw_layer(
+    drawing: &mut Drawing,
+    sheet: &Sheet,
+    index: usize,
+    standings: &[usize],
+    title: &str,
+) {
+    let (row, column) = (index / sheet.columns, index % sheet.columns);
+    let axis = |label| Axis::every(label, [0.0, 1.0], 0.25);
+    let (x, y) = (axis("red *R*"), axis("green *G*"));
+    let frame = Frame { rect: sheet.rect(row, column), x, y };
+    let side = standings.len().isqrt();
+    let colors: Vec<[u8; 3]> = standings.iter().map(|&standing| STANDINGS[standing]).collect();
+    drawing.pixels(frame.rect, &raster::png(side, &colors));
+    frame.draw_axes(drawing);
+    frame.draw_title(drawing, title, "");
+}
+
+/// Shares over blue, one area above the other.
+fn draw_shares(drawing: &mut Drawing, rect: Rect, layers: &[Vec<usize>]) {
+    let frame = Frame {
+        rect,
+        x: Axis::every("blue *B*", [0.0, 1.0], 0.25),
+        y: Axis::every("share of the layer / %", [0.0, 100.0], 25.0),
+    };
+    let last = (layers.len() - 1) as f64;
+    let found: Vec<[f64; 3]> = layers.iter().map(shares).collect();
+    // From the whole down: each area is drawn over the one that it leaves room for.
+    for (standing, color) in STANDINGS.iter().enumerate().rev() {
+        let height = |shares: &[f64; 3]| 100.0 * shares[..=standing].iter().sum::<f64>();
+        let upper = (0_u32..).zip(&found).map(|(i, s)| [f64::from(i) / last, height(s)]);
+        let corners = [[1.0, 0.0], [0.0, 0.0]];
+        let outline = upper.chain(corners).map(|p| frame.point(p));
+        drawing.polygon(outline, &hex(*color), 1.0);
+    }
+    frame.draw_axes(drawing);
+    frame.draw_title(drawing, "[f] all layers", "");
+}
+
+/// A key to the colors, with shares over all nodes, below the columns.
+fn draw_legend(drawing: &mut Drawing, sheet: &Sheet, all: &[String; 3]) {
+    let baseline = sheet.height_mm() - 2.6;
+    for (i, (name, share)) in NAMES.into_iter().zip(all).enumerate() {
+        let left = sheet.rect(1, i).left;
+        let rect = Rect { left, top: baseline - 2.4, width: 5.0, height: 3.0 };
+        swatch(drawing, rect, STANDINGS[i]);
+        drawing.text(&Text::label([left + 6.6, baseline], &format!("{name}, {share}")));
+    }
+}

@@ -1,0 +1,69 @@
+//! Colors of lines and areas, apart for color-blind readers.
+//!
+//! Lines are from the set of Okabe and Ito; the ramps get darker from end to end, so that they
+//! read in gray as well.
+
+/// Text and axes.
+pub(crate) const INK: &str = "#1f2328";
+/// Second lines of titles.
+pub(crate) const MUTED: &str = "#5b626b";
+
+/// Absorption.
+pub(crate) const ABSORPTION: &str = "#0072b2";
+/// Emission.
+pub(crate) const EMISSION: &str = "#d55e00";
+
+/// Five weights from 0 to 1, from blue to orange through gray.
+pub(crate) const WEIGHTS: [&str; 5] = ["#1f5fa8", "#5b9bc7", "#8a8f96", "#e39a4f", "#bf4b00"];
+
+/// What shows a color: reflectance, fluorescence, nothing.
+pub(crate) const STANDINGS: [[u8; 3]; 3] =
+    [[0xdc, 0xe6, 0xe4], [0xf3, 0xb8, 0x6b], [0x5c, 0x66, 0x78]];
+
+/// The ramp of errors, from none to the greatest shown.
+const ERRORS: [[u8; 3]; 6] = [
+    [0xff, 0xff, 0xff],
+    [0xfd, 0xe3, 0xb8],
+    [0xfc, 0xb1, 0x7a],
+    [0xe8, 0x6a, 0x4a],
+    [0xb0, 0x24, 0x36],
+    [0x4f, 0x0a, 0x2e],
+];
+
+/// The color of an error, a share 0..=1 of the greatest shown; more counts as 1.
+pub(crate) fn error_color(share: f64) -> [u8; 3] {
+    let last = ERRORS.len() - 1;
+    let position = share.clamp(0.0, 1.0) * last as f64;
+    let above = (1..last).find(|&i| position <= i as f64).unwrap_or(last);
+    let fraction = position - (above - 1) as f64;
+    let [low, high] = [ERRORS[above - 1], ERRORS[above]];
+    [0, 1, 2].map(|k| byte(f64::from(low[k]) * (1.0 - fraction) + f64::from(high[k]) * fraction))
+}
+
+/// The nearest whole number in 0..=255.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "clamped before; rounding is what it is for"
+)]
+pub(crate) fn byte(value: f64) -> u8 {
+    value.clamp(0.0, 255.0).round() as u8
+}
+
+/// A color as SVG writes it.
+pub(crate) fn hex([r, g, b]: [u8; 3]) -> String {
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_ramp_of_errors_starts_white_and_ends_where_it_says() {
+        assert_eq!(error_color(0.0), ERRORS[0]);
+        assert_eq!(error_color(0.4), ERRORS[2]);
+        assert_eq!(error_color(1.0), ERRORS[5]);
+        assert_eq!(error_color(7.0), ERRORS[5]);
+    }
+}

@@ -1,0 +1,155 @@
+//! Lines of text.
+
+use super::{INK, escape, number};
+
+/// Size of labels, mm: 7.1 points.
+const LABEL_MM: f64 = 2.5;
+/// Size of ticks and notes, mm: 6.2 points.
+const NOTE_MM: f64 = 2.2;
+/// A subscript's size and depth, as shares of the text around it.
+const SUBSCRIPT: [f64; 2] = [0.7, 0.22];
+
+const HALO: &str = " paint-order=\"stroke\" stroke=\"#ffffff\" stroke-width=\"0.7\"";
+
+/// The end of the line that the given point is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Anchor {
+    Start,
+    Middle,
+    End,
+}
+
+/// One line of text. `*E*` is italic, `_{00}` a subscript, `[a]` at the start a bold panel letter.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Text<'t> {
+    at: [f64; 2],
+    text: &'t str,
+    size_mm: f64,
+    anchor: Anchor,
+    color: &'t str,
+    bold: bool,
+    upright: bool,
+    halo: bool,
+}
+
+impl<'t> Text<'t> {
+    /// A label whose baseline starts at a point of the page.
+    pub(crate) fn label(at: [f64; 2], text: &'t str) -> Self {
+        Self {
+            at,
+            text,
+            size_mm: LABEL_MM,
+            anchor: Anchor::Start,
+            color: INK,
+            bold: false,
+            upright: false,
+            halo: false,
+        }
+    }
+
+    /// Smaller: ticks, and notes in a panel.
+    pub(crate) fn note(at: [f64; 2], text: &'t str) -> Self {
+        Self { size_mm: NOTE_MM, ..Self::label(at, text) }
+    }
+
+    pub(crate) fn anchor(self, anchor: Anchor) -> Self {
+        Self { anchor, ..self }
+    }
+
+    pub(crate) fn color(self, color: &'t str) -> Self {
+        Self { color, ..self }
+    }
+
+    pub(crate) fn bold(self) -> Self {
+        Self { bold: true, ..self }
+    }
+
+    /// Turned to read from bottom to top.
+    pub(crate) fn upright(self) -> Self {
+        Self { upright: true, ..self }
+    }
+
+    /// With a white rim, to be read above lines.
+    pub(crate) fn halo(self) -> Self {
+        Self { halo: true, ..self }
+    }
+
+    pub(crate) fn to_svg(self) -> String {
+        let [x, y] = self.at.map(number);
+        let place = if self.upright {
+            format!("transform=\"translate({x} {y}) rotate(-90)\"")
+        } else {
+            format!("x=\"{x}\" y=\"{y}\"")
+        };
+        let anchor = match self.anchor {
+            Anchor::Start => "",
+            Anchor::Middle => " text-anchor=\"middle\"",
+            Anchor::End => " text-anchor=\"end\"",
+        };
+        let color =
+            if self.color == INK { String::new() } else { format!(" fill=\"{}\"", self.color) };
+        let weight = if self.bold { " font-weight=\"bold\"" } else { "" };
+        let halo = if self.halo { HALO } else { "" };
+        let size = number(self.size_mm);
+        let spans = spans(self.text, self.size_mm);
+        format!("<text {place} font-size=\"{size}\"{anchor}{color}{weight}{halo}>{spans}</text>")
+    }
+}
+
+/// The text with its marks turned into elements.
+fn spans(text: &str, size_mm: f64) -> String {
+    let [share, depth] = SUBSCRIPT;
+    let (small, drop) = (number(share * size_mm), number(depth * size_mm));
+    let mut svg = String::new();
+    let mut rest = text;
+    let mut lift = String::new();
+    while let Some(c) = rest.chars().next() {
+        let marked = [("*", "*"), ("_{", "}"), ("[", "]")].into_iter().find_map(|(open, close)| {
+            let (inner, after) = rest.strip_prefix(open)?.split_once(close)?;
+            Some((open, escape(inner), after))
+        });
+        let Some((mark, inner, after)) = marked else {
+            let (plain, after) = rest.split_at(
+                rest[c.len_utf8()..]
+                    .find(['*', '_', '['])
+                    .map_or(rest.len(), |end| end + c.len_utf8()),
+            );
+            svg += &if lift.is_empty() {
+                escape(plain)
+            } else {
+                format!("<tspan{lift}>{}</tspan>", escape(plain))
+            };
+            lift.clear();
+            rest = after;
+            continue;
+        };
+        svg += &match mark {
+            "*" => format!("<tspan font-style=\"italic\"{lift}>{inner}</tspan>"),
+            "[" => format!("<tspan font-weight=\"bold\"{lift}>({inner})</tspan>"),
+            _ => format!("<tspan font-size=\"{small}\" dy=\"{drop}\">{inner}</tspan>"),
+        };
+        lift = if mark == "_{" { format!(" dy=\"-{drop}\"") } else { String::new() };
+        rest = after;
+    }
+    svg
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn marks_become_elements_and_the_baseline_comes_back() {
+        assert_eq!(spans("a < b", 2.0), "a &lt; b");
+        assert_eq!(
+            spans("[a] Δ*E*_{00} ≤ 1", 2.0),
+            "<tspan font-weight=\"bold\">(a)</tspan> Δ<tspan font-style=\"italic\">E</tspan>\
+             <tspan font-size=\"1.4\" dy=\"0.44\">00</tspan><tspan dy=\"-0.44\"> ≤ 1</tspan>"
+        );
+    }
+
+    #[test]
+    fn a_lone_mark_is_text() {
+        assert_eq!(spans("2 * 3 _ [", 2.0), "2 * 3 _ [");
+    }
+}
