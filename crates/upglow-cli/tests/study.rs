@@ -21,7 +21,7 @@ fn a_figure_is_written_as_svg_and_png_and_is_the_same_twice() {
 fn a_figure_that_is_not_there_is_refused() {
     let folder = Folder::new();
     let refused = folder.refused(2, "figures --only 11 --resolution 4");
-    assert_eq!(refused, "upglow: --only: figure 11, expected 1 to 10");
+    assert_eq!(refused, "--only: figure 11, expected 1 to 10");
 }
 
 #[test]

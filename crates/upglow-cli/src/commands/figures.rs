@@ -44,6 +44,10 @@ pub(crate) fn run(args: &FiguresArgs, format: Format, quiet: bool) -> Result<(),
         StudyError::UnknownFigure { .. } => Failure::option("--only", error),
         error => study_failure(error),
     })?;
+    std::fs::create_dir_all(&args.out).map_err(|error| {
+        let found = io_message(&error);
+        Failure::file(&args.out, format_args!("{found}, expected a folder to write in"))
+    })?;
     let written = drawn.iter().map(|figure| write(args, figure)).collect::<Result<Vec<_>, _>>()?;
     let folder = args.out.display().to_string();
     format.print(&FiguresReport { folder, figures: written })
