@@ -199,3 +199,47 @@ fn median(mut values: Vec<f64>) -> f64 {
     let count = values.len();
     (values[(count - 1) / 2] + values[count / 2]) / 2.0
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use upglow::{Edge, Fluorescence, Node};
+    use upglow_fit::Unwatched;
+
+    use crate::{Cubes, StudyCube};
+
+    /// A matched node inside the cube of six, and inside its layer.
+    const INSIDE: usize = (3 * 6 + 3) * 6 + 3;
+
+    fn with_one_other(reflectance: f64) -> Field {
+        let cube = Cubes::new(6).get(StudyCube::Reference, &Unwatched).unwrap();
+        let mut nodes = cube.nodes().to_vec();
+        let level = upglow::Sigmoid::flat(reflectance).c2;
+        let flat = Edge { edge_nm: 565.0, level, slope_per_nm: 0.0 };
+        nodes[INSIDE] = Node::new(flat, Fluorescence::None, 0.0);
+        let (contract, model) = (cube.contract().clone(), cube.model().clone());
+        Field::of(Arc::new(Cube::new(contract, model, cube.fit().clone(), 6, nodes).unwrap()))
+    }
+
+    #[test]
+    fn a_node_that_sticks_out_is_an_artifact_and_makes_the_cube_rougher() {
+        let (smooth, rough) = (with_one_other(0.6), with_one_other(0.2));
+        assert!(!smooth.artifacts_in_layer(3).contains(&INSIDE));
+        assert!(rough.artifacts_in_layer(3).contains(&INSIDE));
+        assert!(rough.color_roughness().mean > smooth.color_roughness().mean);
+        assert!(rough.spectral_roughness().mean > smooth.spectral_roughness().mean);
+    }
+
+    #[test]
+    fn the_radiance_factor_has_the_color_of_the_node() {
+        // Samples over 10 nm from 400 to 700 nm in place of 5 nm from 300 to 830.
+        const TOLERANCE: f64 = 0.02;
+        let field = Field::of(Cubes::new(4).get(StudyCube::Reference, &Unwatched).unwrap());
+        let weights = field.sums.colorimetry().weights();
+        for (factor, shown) in field.radiance_factors().iter().zip(&field.shown) {
+            let luminance: f64 =
+                factor.iter().enumerate().map(|(i, r)| 2.0 * r * weights[20 + 2 * i][1]).sum();
+            assert!((luminance - shown.0[1]).abs() < TOLERANCE, "{luminance} {shown:?}");
+        }
+    }
+}

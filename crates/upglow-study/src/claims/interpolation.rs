@@ -47,8 +47,8 @@ fn near_the_spectrum(field: &Field) -> Claim {
             features.median < coefficients.median && features.mean < coefficients.mean,
         ),
         why: "Holds if median and mean are lower for features. A peak that moves is not one peak \
-              that fades while another grows: between the ends it is purer than the mixture. And \
-              reflectances that are almost straight have shifts and widths far outside the \
+              that fades while another grows: between the ends it is purer than the mixture. Likely \
+              too: reflectances that are almost straight have shifts and widths far outside the \
               visible, which do not average with others'.",
     }
 }
@@ -80,8 +80,9 @@ fn meaningful(field: &Field) -> Claim {
             features.hue_deg.median < coefficients.hue_deg.median
                 && features.pace.median < coefficients.pace.median,
         ),
-        why: "Holds if hue and pace are more even: equal weights should make equal steps. The \
-              detour is no part of it: hues that change evenly go around gray, not straight.",
+        why: "Holds if hue and pace are more even: equal weights should make equal steps. They \
+              are, by little. The detour is no part of it: hues that change evenly go around gray, \
+              not straight through it.",
     }
 }
 
@@ -103,9 +104,7 @@ fn works_with_one_sign(field: &Field, centers: &[Center]) -> Claim {
             Number::count("centers", features.count),
         ],
         verdict: Verdict::holds_if(features.p95 <= 1.0),
-        why: "Holds if 95 % are within 1 ΔE00, just visible. The median is; the tail is between \
-              nodes whose shift or width is far outside the visible, and between those with \
-              different dyes, whose reflectances differ most.",
+        why: "Holds if 95 % are within 1 ΔE00, just visible. Coefficients come nearer all the same.",
     }
 }
 

@@ -71,8 +71,8 @@ fn artifacts_of_de76(fields: &Fields) -> Claim {
             Number::count("nodes in the layer", fields.de76.cube().resolution().pow(2)),
         ],
         verdict: Verdict::holds_if(some),
-        why: "Holds if more than 1 % of the layer's nodes are artifacts. They lie in the green \
-              corner, which no material shows, and not in the reds.",
+        why: "Holds if more than 1 % of the layer's nodes are artifacts. Most lie in the \
+              greens that no material shows.",
     }
 }
 
@@ -181,7 +181,7 @@ fn smoothness_of_de2000(fields: &Fields) -> Claim {
             de2000[0] < rgb[0] && at_figure(&fields.de2000) < at_figure(&fields.rgb),
         ),
         why: "Holds if the colors of ΔE00 are less rough in both. It is the metric in which \
-              roughness is measured, as an eye would; the spectra, which no metric sees, are as \
-              rough under either.",
+              roughness is measured, as an eye would; the spectra, which no metric sees, are about \
+              as rough under either.",
     }
 }
