@@ -85,7 +85,7 @@ fn gamut(fields: &Fields) -> Claim {
         ],
         verdict: Verdict::holds_if((dyes / analytic - 1.0).abs() <= SIMILAR),
         why: "Holds if the areas differ by at most 10 %. The paper compares outlines by eye. The \
-              formula's widths are ours, [jung] gives none, and it may put its emission at any \
+              formula's widths are ours, Jung et al. give none, and it may put its emission at any \
               wavelength with any Stokes shift, so it reaches more nodes than eight fixed dyes.",
     }
 }
