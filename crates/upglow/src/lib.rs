@@ -6,8 +6,11 @@
 //!
 //! - reflectance: [`Sigmoid`], [`Vertex`], [`Features`], [`Edge`]
 //! - fluorescence: [`Model`], [`DyeSet`], [`DyeModel`], [`AnalyticModel`]
-//! - color: [`ModelOnGrid`]
+//! - color: [`ModelOnGrid`], and [`ColorTable`] for whole images
 //! - cubes: [`Cube`], [`Interpolation`]; files are described in `docs/cube-format.md`
+//! - sampling: [`Mixture::sample_incident`], [`Mixture::sample_outgoing`], [`Sample`]
+//! - inner loops: [`Cube::lookup_table`] gives a [`LookupTable`], whose [`Blend`] is a mixture in
+//!   single precision
 //!
 //! # Examples
 //!
@@ -29,26 +32,38 @@
 //!
 //! Out of scope: finding materials (crate `upglow-fit`), threads, printing.
 
+mod batch;
+mod blend;
+mod blend_sampling;
 mod bspline;
 mod cube;
 mod cube_file;
+mod curve_table;
+mod distribution;
 mod dye;
 mod edge;
 mod features;
 mod header;
 mod interpolation;
+mod lookup_table;
 mod material;
 mod mixture;
 mod model;
 mod model_on_grid;
+#[cfg(test)]
+mod random;
+mod sampling;
 mod sigmoid;
 
+pub use batch::{ColorTable, LengthError};
+pub use blend::Blend;
 pub use cube::{Cube, CubeError, FitRecord, LookupError, Node};
 pub use cube_file::{ReadCubeError, WriteCubeError, write_whole};
 pub use dye::{DyeSet, DyeSetError};
 pub use edge::Edge;
 pub use features::{FeatureError, Features};
 pub use interpolation::Interpolation;
+pub use lookup_table::LookupTable;
 pub use material::{Fluorescence, Material};
 pub use mixture::Mixture;
 pub use model::{
@@ -56,4 +71,5 @@ pub use model::{
     QuantumYield, UnknownChoice,
 };
 pub use model_on_grid::{Emitted, ModelOnGrid};
+pub use sampling::{Draw, Sample};
 pub use sigmoid::{Sigmoid, Vertex};

@@ -59,14 +59,14 @@ impl Material {
 /// Light that one absorber takes and one emitter gives back.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lobe<'m> {
-    strength: f64,
-    quantum_yield: f64,
-    mean_emission_nm: f64,
-    curves: Curves<'m>,
+    pub(crate) strength: f64,
+    pub(crate) quantum_yield: f64,
+    pub(crate) mean_emission_nm: f64,
+    pub(crate) curves: Curves<'m>,
 }
 
 #[derive(Clone, Copy, Debug)]
-enum Curves<'m> {
+pub(crate) enum Curves<'m> {
     Dyes { model: &'m crate::DyeModel, first: usize, second: usize, weight: f64 },
     Bells { model: &'m crate::AnalyticModel, absorption_nm: f64, emission_nm: f64 },
 }
@@ -86,13 +86,16 @@ impl Lobe<'_> {
             }
     }
 
-    /// Share of incident energy at `lambda_nm` that comes out somewhere.
-    pub(crate) fn returned(&self, lambda_nm: f64) -> f64 {
-        let accounting = match self.curves {
+    pub(crate) fn accounting(&self) -> crate::Accounting {
+        match self.curves {
             Curves::Dyes { model, .. } => model.options().accounting,
             Curves::Bells { model, .. } => model.accounting(),
-        };
-        let share = accounting.share(lambda_nm, self.mean_emission_nm);
+        }
+    }
+
+    /// Share of incident energy at `lambda_nm` that comes out somewhere.
+    pub(crate) fn returned(&self, lambda_nm: f64) -> f64 {
+        let share = self.accounting().share(lambda_nm, self.mean_emission_nm);
         self.absorbed(lambda_nm) * self.quantum_yield * share
     }
 

@@ -101,7 +101,7 @@ impl<'m> Mixture<'m> {
         self.parts().any(|(_, material)| material.fluorescence.concentration() > 0.0)
     }
 
-    fn lobes(&self) -> impl Iterator<Item = (f64, crate::material::Lobe<'m>)> + '_ {
+    pub(crate) fn lobes(&self) -> impl Iterator<Item = (f64, crate::material::Lobe<'m>)> + '_ {
         self.parts().flat_map(|(weight, material)| {
             material.fluorescence.lobes(self.model).map(move |lobe| (weight, lobe))
         })

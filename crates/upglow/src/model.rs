@@ -7,6 +7,7 @@ use upglow_color::{Grid, Spectrum};
 
 use crate::DyeSet;
 use crate::bspline::Bell;
+use crate::distribution::Distribution;
 
 /// How the fluorescence of a material is described, and by what rules it gives light back.
 #[derive(Clone, Debug, PartialEq)]
@@ -136,6 +137,10 @@ pub struct DyeCurves {
     pub quantum_yield: f64,
     /// Mean wavelength of the emission, nm.
     pub mean_emission_nm: f64,
+    /// The absorption, to draw wavelengths from.
+    pub(crate) absorbing: Distribution,
+    /// The emission, to draw wavelengths from.
+    pub(crate) emitting: Distribution,
 }
 
 impl DyeModel {
@@ -212,8 +217,11 @@ impl DyeCurves {
         let emission = emission.scaled(area.recip());
         let moment: f64 =
             emission.values().iter().zip(Grid::FINE.wavelengths_nm()).map(|(e, nm)| e * nm).sum();
+        let absorption = Spectrum::new(Grid::FINE, loaded).expect("a function of finite samples");
         Self {
-            absorption: Spectrum::new(Grid::FINE, loaded).expect("a function of finite samples"),
+            absorbing: Distribution::new(&absorption),
+            emitting: Distribution::new(&emission),
+            absorption,
             emission,
             quantum_yield,
             mean_emission_nm: moment * f64::from(Grid::FINE.step_nm()),
@@ -305,6 +313,16 @@ impl AnalyticModel {
     /// center.
     pub fn emission(&self, center_nm: f64, lambda_nm: f64) -> (f64, f64) {
         Bell::new(center_nm, self.emission_fwhm_nm).area_one(lambda_nm)
+    }
+
+    /// The absorption around `center_nm`; its peak is 1, that of the bell's area is not.
+    pub(crate) fn absorption_bell(&self, center_nm: f64) -> Bell {
+        Bell::new(center_nm, self.absorption_fwhm_nm)
+    }
+
+    /// The emission around `center_nm`.
+    pub(crate) fn emission_bell(&self, center_nm: f64) -> Bell {
+        Bell::new(center_nm, self.emission_fwhm_nm)
     }
 
     /// The area of the emission around `center_nm` between two wavelengths, 0..=1.

@@ -1,7 +1,5 @@
 //! Algorithm 1 against computed vectors, where the folder that holds them is at hand.
 
-#![expect(clippy::unwrap_used, reason = "a test may panic")]
-
 use std::path::PathBuf;
 
 use upglow::Features;

@@ -1,0 +1,426 @@
+//! Drawing wavelengths in proportion to what a mixture makes of them.
+//!
+//! A path from the camera knows the outgoing wavelength λo and draws the incident one; a path from
+//! the light knows the incident wavelength λi and draws the outgoing one. Both choose between the
+//! elastic part, which keeps the wavelength, and the fluorescent lobes in proportion to what each
+//! carries, and then draw from the chosen lobe exactly. Every sample then has the same throughput:
+//!
+//! - from the camera, W(λo) = r(λo) + Σ ê(λo)·∫ returned(λ) dλ;
+//! - from the light, W(λi) = r(λi) + Σ returned(λi), the albedo.
+//!
+//! # Measure
+//!
+//! The elastic part is a Dirac delta: it has a probability, not a density. The fluorescent part
+//! has a density per nm, which is the re-radiation divided by the throughput. Densities of the two
+//! directions and of other strategies combine by multiple importance sampling; the delta combines
+//! with nothing.
+
+use crate::Mixture;
+use crate::material::{Curves, Lobe};
+
+/// A wavelength drawn from a material, in double or single precision.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample<T> {
+    /// The wavelength drawn, nm.
+    pub nm: T,
+    /// Factor of the path's throughput: what the material carries at the known wavelength divided
+    /// by the density (elastic: the probability) of the one drawn; the same for every sample.
+    pub throughput: T,
+    /// How the wavelength was drawn and how likely it was.
+    pub draw: Draw<T>,
+}
+
+/// How a wavelength was drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Draw<T> {
+    /// The wavelength was kept.
+    Elastic {
+        /// How likely that was, 0..=1.
+        probability: T,
+    },
+    /// The wavelength was changed.
+    Fluorescent {
+        /// The density of the wavelength drawn, 1/nm; over all of them it adds up to 1 less the
+        /// probability of the elastic draw.
+        per_nm: T,
+    },
+}
+
+/// What is carried at one wavelength by reflection and by each fluorescent lobe.
+struct Shares<'m> {
+    elastic: f64,
+    /// At most two lobes for each of four materials.
+    lobes: [Option<(f64, Lobe<'m>)>; 8],
+}
+
+impl<'m> Shares<'m> {
+    fn total(&self) -> f64 {
+        self.elastic + self.lobes.iter().flatten().map(|(share, _)| share).sum::<f64>()
+    }
+
+    /// The lobe that `u` in 0..1 falls on; `None` is the elastic part.
+    fn choose(&self, u: f64) -> Option<Lobe<'m>> {
+        let mut rest = u * self.total() - self.elastic;
+        if rest < 0.0 {
+            return None;
+        }
+        let mut last = None;
+        for &(share, lobe) in self.lobes.iter().flatten().filter(|(share, _)| *share > 0.0) {
+            last = Some(lobe);
+            rest -= share;
+            if rest < 0.0 {
+                break;
+            }
+        }
+        last
+    }
+}
+
+impl<'m> Mixture<'m> {
+    /// Draws the wavelength of incident light, given that of the light that leaves: the camera's
+    /// way. `u` are two independent numbers in 0..1; the first chooses between reflection and
+    /// lobes, the second draws in the lobe.
+    ///
+    /// `None` where nothing can leave at `out_nm`.
+    pub fn sample_incident(&self, out_nm: f64, u: [f64; 2]) -> Option<Sample<f64>> {
+        let shares = self.shares_leaving(out_nm);
+        self.sample(out_nm, &shares, u, |lobe, u| {
+            let in_nm = lobe.sample_absorbed(u);
+            (in_nm, self.reradiation_per_nm(in_nm, out_nm))
+        })
+    }
+
+    /// The density, 1/nm, with which [`Mixture::sample_incident`] draws `in_nm` by fluorescence.
+    pub fn incident_pdf_per_nm(&self, in_nm: f64, out_nm: f64) -> f64 {
+        ratio(self.reradiation_per_nm(in_nm, out_nm), self.shares_leaving(out_nm).total())
+    }
+
+    /// The probability, 0..=1, that [`Mixture::sample_incident`] keeps the wavelength.
+    pub fn incident_elastic_probability(&self, out_nm: f64) -> f64 {
+        ratio(self.reflectance(out_nm), self.shares_leaving(out_nm).total())
+    }
+
+    /// Draws the wavelength of the light that leaves, given that of incident light: the light's
+    /// way. `u` are two independent numbers in 0..1; the first chooses between reflection and
+    /// lobes, the second draws in the lobe.
+    ///
+    /// `None` where nothing of the light at `in_nm` leaves.
+    pub fn sample_outgoing(&self, in_nm: f64, u: [f64; 2]) -> Option<Sample<f64>> {
+        let shares = self.shares_arriving(in_nm);
+        self.sample(in_nm, &shares, u, |lobe, u| {
+            let out_nm = lobe.sample_emitted(u);
+            (out_nm, self.reradiation_per_nm(in_nm, out_nm))
+        })
+    }
+
+    /// The density, 1/nm, with which [`Mixture::sample_outgoing`] draws `out_nm` by fluorescence.
+    pub fn outgoing_pdf_per_nm(&self, in_nm: f64, out_nm: f64) -> f64 {
+        ratio(self.reradiation_per_nm(in_nm, out_nm), self.shares_arriving(in_nm).total())
+    }
+
+    /// The probability, 0..=1, that [`Mixture::sample_outgoing`] keeps the wavelength.
+    pub fn outgoing_elastic_probability(&self, in_nm: f64) -> f64 {
+        ratio(self.reflectance(in_nm), self.shares_arriving(in_nm).total())
+    }
+
+    fn sample(
+        &self,
+        known_nm: f64,
+        shares: &Shares<'m>,
+        [choice, u]: [f64; 2],
+        draw: impl Fn(Lobe<'m>, f64) -> (f64, f64),
+    ) -> Option<Sample<f64>> {
+        let throughput = shares.total();
+        if throughput <= 0.0 {
+            return None;
+        }
+        Some(match shares.choose(choice) {
+            None => {
+                let probability = shares.elastic / throughput;
+                Sample { nm: known_nm, throughput, draw: Draw::Elastic { probability } }
+            }
+            Some(lobe) => {
+                let (nm, reradiation_per_nm) = draw(lobe, u);
+                let per_nm = reradiation_per_nm / throughput;
+                Sample { nm, throughput, draw: Draw::Fluorescent { per_nm } }
+            }
+        })
+    }
+
+    /// What leaves at `out_nm` of light that is 1 at every wavelength.
+    fn shares_leaving(&self, out_nm: f64) -> Shares<'m> {
+        self.shares(out_nm, |lobe| lobe.emission(out_nm) * lobe.returned_total_nm())
+    }
+
+    /// What leaves of light at `in_nm`.
+    fn shares_arriving(&self, in_nm: f64) -> Shares<'m> {
+        self.shares(in_nm, |lobe| lobe.returned(in_nm) * lobe.emitted_total())
+    }
+
+    fn shares(&self, nm: f64, share: impl Fn(Lobe<'m>) -> f64) -> Shares<'m> {
+        let mut lobes = [None; 8];
+        for (slot, (weight, lobe)) in lobes.iter_mut().zip(self.lobes()) {
+            *slot = Some((weight * share(lobe), lobe));
+        }
+        Shares { elastic: self.reflectance(nm), lobes }
+    }
+}
+
+/// 0 where there is nothing to share.
+fn ratio(part: f64, whole: f64) -> f64 {
+    if whole > 0.0 { part / whole } else { 0.0 }
+}
+
+impl Lobe<'_> {
+    /// ∫ returned dλ over incident wavelengths, nm.
+    pub(crate) fn returned_total_nm(&self) -> f64 {
+        let area = match self.curves {
+            Curves::Dyes { .. } => self.shared_areas().iter().sum(),
+            Curves::Bells { model, absorption_nm, .. } => {
+                let (bell, per_area) = bell(model, absorption_nm);
+                per_area
+                    * match self.accounting() {
+                        crate::Accounting::Energy => 1.0,
+                        crate::Accounting::Photon => {
+                            bell.shared_area_below(self.mean_emission_nm, f64::INFINITY)
+                        }
+                    }
+            }
+        };
+        self.strength * self.quantum_yield * area
+    }
+
+    /// ∫ ê dλ: 1, less what a measured emission that ends above zero has outside its tables.
+    pub(crate) fn emitted_total(&self) -> f64 {
+        match self.curves {
+            Curves::Dyes { model, first, second, weight } => {
+                let area = |dye: usize| model.curves()[dye].emitting.total();
+                (1.0 - weight) * area(first) + weight * area(second)
+            }
+            Curves::Bells { .. } => 1.0,
+        }
+    }
+
+    /// An incident wavelength with the density of what is returned, from `u` in 0..1.
+    pub(crate) fn sample_absorbed(&self, u: f64) -> f64 {
+        match self.curves {
+            Curves::Dyes { model, first, second, .. } => {
+                let (dye, u) = pick([first, second], self.shared_areas(), u);
+                let curve = &model.curves()[dye].absorbing;
+                curve.sample_shared(self.accounting(), self.mean_emission_nm, u)
+            }
+            Curves::Bells { model, absorption_nm, .. } => {
+                let (bell, _) = bell(model, absorption_nm);
+                match self.accounting() {
+                    crate::Accounting::Energy => bell.quantile(u),
+                    crate::Accounting::Photon => bell.shared_quantile(self.mean_emission_nm, u),
+                }
+            }
+        }
+    }
+
+    /// An outgoing wavelength with the density of the emission, from `u` in 0..1.
+    pub(crate) fn sample_emitted(&self, u: f64) -> f64 {
+        match self.curves {
+            Curves::Dyes { model, first, second, weight } => {
+                let area = |dye: usize| model.curves()[dye].emitting.total();
+                let areas = [(1.0 - weight) * area(first), weight * area(second)];
+                let (dye, u) = pick([first, second], areas, u);
+                model.curves()[dye].emitting.sample(u)
+            }
+            Curves::Bells { model, emission_nm, .. } => {
+                model.emission_bell(emission_nm).quantile(u)
+            }
+        }
+    }
+
+    /// ∫ a·share dλ of the two dyes, by weight, nm; zeros for bells.
+    fn shared_areas(&self) -> [f64; 2] {
+        let Curves::Dyes { model, first, second, weight } = self.curves else {
+            return [0.0; 2];
+        };
+        let accounting = self.accounting();
+        [(first, 1.0 - weight), (second, weight)].map(|(dye, weight)| {
+            weight * model.curves()[dye].absorbing.shared_total(accounting, self.mean_emission_nm)
+        })
+    }
+}
+
+/// The absorption around `center_nm`, and the area that it has for a peak of 1, nm.
+fn bell(model: &crate::AnalyticModel, center_nm: f64) -> (crate::bspline::Bell, f64) {
+    let bell = model.absorption_bell(center_nm);
+    (bell, 1.5 * bell.step_nm)
+}
+
+/// One of two dyes in proportion to `areas`, and what is left of `u` to draw from it.
+fn pick([first, second]: [usize; 2], areas: [f64; 2], u: f64) -> (usize, f64) {
+    let target = u * (areas[0] + areas[1]);
+    if target < areas[0] || areas[1] <= 0.0 {
+        (first, ratio(target, areas[0]))
+    } else {
+        (second, (target - areas[0]) / areas[1])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Model;
+    use crate::random::{Random, assert_drawn_from, materials, models, place};
+    use upglow_color::Grid;
+
+    const DRAWS: usize = 20_000;
+    /// Six standard deviations: of the hundreds of comparisons none is that far off by chance.
+    const DEVIATIONS: f64 = 6.0;
+
+    fn mixtures(model: &Model, seed: u64) -> Vec<Mixture<'_>> {
+        let mut random = Random::new(seed);
+        (0..2)
+            .map(|_| {
+                let parts = materials(model, &mut random);
+                Mixture::new(model, parts)
+            })
+            .collect()
+    }
+
+    #[test]
+    fn incident_wavelengths_have_the_density_that_is_said() {
+        for (seed, model) in (0..).zip(models()) {
+            for mixture in mixtures(&model, seed) {
+                for out_nm in [450.3, 520.0, 590.7] {
+                    let mut random = Random::new(seed);
+                    assert_drawn_from(
+                        DRAWS,
+                        |_| mixture.sample_incident(out_nm, [random.unit(), random.unit()]),
+                        |in_nm| mixture.incident_pdf_per_nm(in_nm, out_nm),
+                        mixture.incident_elastic_probability(out_nm),
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn outgoing_wavelengths_have_the_density_that_is_said() {
+        for (seed, model) in (0..).zip(models()) {
+            for mixture in mixtures(&model, seed) {
+                for in_nm in [345.0, 450.3, 530.8] {
+                    let mut random = Random::new(seed);
+                    assert_drawn_from(
+                        DRAWS,
+                        |_| mixture.sample_outgoing(in_nm, [random.unit(), random.unit()]),
+                        |out_nm| mixture.outgoing_pdf_per_nm(in_nm, out_nm),
+                        mixture.outgoing_elastic_probability(in_nm),
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn draws_from_the_light_converge_to_the_columns_of_the_matrix() {
+        let grid = Grid::FIT;
+        for (seed, model) in (0..).zip(models()) {
+            for mixture in mixtures(&model, seed) {
+                let matrix = mixture.reradiation_matrix(grid);
+                for (column, in_nm) in grid.wavelengths_nm().enumerate().step_by(17) {
+                    let mut random = Random::new(seed);
+                    let mut sums = vec![0.0; grid.len()];
+                    for _ in 0..DRAWS {
+                        let u = [random.unit(), random.unit()];
+                        let Some(sample) = mixture.sample_outgoing(in_nm, u) else { continue };
+                        let band = ((sample.nm - 300.0) / 5.0).round().clamp(0.0, 106.0);
+                        sums[place(band)] += sample.throughput;
+                    }
+                    for (row, sum) in matrix.iter().zip(sums) {
+                        assert_estimate(sum / DRAWS as f64, row[column], mixture.albedo(in_nm));
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn draws_from_the_camera_converge_to_the_rows_of_the_matrix() {
+        // Bins of ten bands of 1 nm. The matrix takes the incident light at the bands' centers.
+        const QUADRATURE: f64 = 2e-5;
+        let grid = Grid::FINE;
+        for (seed, model) in (0..).zip(models()) {
+            for mixture in mixtures(&model, seed) {
+                let matrix = mixture.reradiation_matrix(grid);
+                for row in [120, 205, 303] {
+                    let mut random = Random::new(seed);
+                    let (mut sums, mut greatest) = (vec![0.0; 54], 0.0_f64);
+                    for _ in 0..DRAWS {
+                        let out_nm = 300.0 + row as f64 + random.unit() - 0.5;
+                        let u = [random.unit(), random.unit()];
+                        let Some(sample) = mixture.sample_incident(out_nm, u) else { continue };
+                        if (309.5..829.5).contains(&sample.nm)
+                            && matches!(sample.draw, Draw::Fluorescent { .. })
+                        {
+                            sums[place((sample.nm - 299.5) / 10.0)] += sample.throughput;
+                            greatest = greatest.max(sample.throughput);
+                        }
+                    }
+                    for (bin, sum) in sums.iter().enumerate().take(53).skip(1) {
+                        let columns = (10 * bin..10 * bin + 10).filter(|&c| c != row);
+                        let mut expected: f64 = columns.map(|c| matrix[row][c]).sum();
+                        if row / 10 == bin {
+                            let nm = 300.0 + row as f64;
+                            expected += matrix[row][row] - mixture.reflectance(nm);
+                        }
+                        let found = sum / DRAWS as f64;
+                        if (found - expected).abs() > QUADRATURE {
+                            assert_estimate(found, expected, greatest);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// A mean of [`DRAWS`] numbers that are 0 or at most `greatest`.
+    fn assert_estimate(found: f64, expected: f64, greatest: f64) {
+        let variance = (greatest * expected - expected * expected).max(0.0) / DRAWS as f64;
+        let limit = DEVIATIONS * variance.sqrt() + greatest * DEVIATIONS.powi(2) / DRAWS as f64;
+        assert!((found - expected).abs() <= limit, "{found} {expected} ± {limit}");
+    }
+
+    #[test]
+    fn every_sample_has_the_same_throughput_and_says_its_density() {
+        for (seed, model) in (0..).zip(models()) {
+            for mixture in mixtures(&model, seed) {
+                let mut random = Random::new(seed);
+                for _ in 0..100 {
+                    let (nm, u) = (350.0 + 350.0 * random.unit(), [random.unit(), random.unit()]);
+                    let sample = mixture.sample_incident(nm, u).unwrap();
+                    if let Draw::Fluorescent { per_nm } = sample.draw {
+                        assert_eq!(per_nm, mixture.incident_pdf_per_nm(sample.nm, nm));
+                        let value = mixture.reradiation_per_nm(sample.nm, nm);
+                        assert!((value / per_nm / sample.throughput - 1.0).abs() < 1e-12);
+                    }
+                    let sample = mixture.sample_outgoing(nm, u).unwrap();
+                    if let Draw::Fluorescent { per_nm } = sample.draw {
+                        assert_eq!(per_nm, mixture.outgoing_pdf_per_nm(nm, sample.nm));
+                        let value = mixture.reradiation_per_nm(nm, sample.nm);
+                        assert!((value / per_nm / sample.throughput - 1.0).abs() < 1e-12);
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn no_number_makes_a_sampler_panic() {
+        for (seed, model) in (0..).zip(models()) {
+            for mixture in mixtures(&model, seed) {
+                for odd in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1.0, 2.0, 1e300] {
+                    for (nm, u) in [(odd, [0.9, 0.5]), (500.0, [odd, 0.5]), (500.0, [0.99, odd])] {
+                        mixture.sample_incident(nm, u);
+                        mixture.sample_outgoing(nm, u);
+                    }
+                }
+            }
+        }
+    }
+}
