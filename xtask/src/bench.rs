@@ -15,7 +15,7 @@ struct Goal {
     peer: &'static str,
 }
 
-const GOALS: [Goal; 6] = [
+const GOALS: [Goal; 19] = [
     Goal {
         job: "build, defaults: 32³, eight dyes, ΔE00, slope limit",
         bench: "build/default/32",
@@ -37,9 +37,87 @@ const GOALS: [Goal; 6] = [
         peer: "",
     },
     Goal { job: "build, analytic fluorescence, 32³", bench: "build/analytic", goal: "", peer: "" },
+    Goal {
+        job: "look-up, random RGB, 32³, material ready to evaluate",
+        bench: "lookup/random/32",
+        goal: "40 ns",
+        peer: "rgb2spec fetch: 56 to 84 ns for 3 numbers",
+    },
+    Goal {
+        job: "the same at 64³",
+        bench: "lookup/random/64",
+        goal: "80 ns",
+        peer: "rgb2spec fetch: 120 to 215 ns",
+    },
+    Goal {
+        job: "reflectance at 4 wavelengths, no dyes",
+        bench: "evaluate/reflectance4/Passive",
+        goal: "6 ns",
+        peer: "",
+    },
+    Goal {
+        job: "the same, dyes at every corner",
+        bench: "evaluate/reflectance4/Dyes",
+        goal: "6 ns",
+        peer: "",
+    },
+    Goal {
+        job: "reflectance at 8 wavelengths, no dyes",
+        bench: "evaluate/reflectance8/Passive",
+        goal: "10 ns",
+        peer: "",
+    },
+    Goal {
+        job: "the same, dyes at every corner",
+        bench: "evaluate/reflectance8/Dyes",
+        goal: "10 ns",
+        peer: "",
+    },
+    Goal {
+        job: "re-radiation, dyes",
+        bench: "evaluate/reradiation/Dyes",
+        goal: "30 ns",
+        peer: "tabulated CDFs, 9 MB a material",
+    },
+    Goal {
+        job: "sampling the incident wavelength, dyes",
+        bench: "sample/sample_incident/Dyes",
+        goal: "30 ns",
+        peer: "",
+    },
+    Goal {
+        job: "sampling the outgoing wavelength, dyes",
+        bench: "sample/sample_outgoing/Dyes",
+        goal: "30 ns",
+        peer: "",
+    },
+    Goal {
+        job: "its density, incident, dyes",
+        bench: "sample/incident_pdf/Dyes",
+        goal: "30 ns",
+        peer: "",
+    },
+    Goal {
+        job: "its density, outgoing, dyes",
+        bench: "sample/outgoing_pdf/Dyes",
+        goal: "30 ns",
+        peer: "",
+    },
+    Goal {
+        job: "10⁷ RGB to XYZ, random, 32³, per color",
+        bench: "batch/xyz_of_random/32",
+        goal: "twice the next line",
+        peer: "",
+    },
+    Goal {
+        job: "reading and writing the arrays, per color",
+        bench: "batch/copy",
+        goal: "",
+        peer: "",
+    },
 ];
 
-/// A bench and its median, as printed.
+/// A bench and its median, as printed; per item where the bench counts items.
 #[derive(Clone, Debug, PartialEq)]
 struct Measured {
     bench: String,
@@ -86,6 +164,10 @@ fn parse(text: &str) -> Vec<Measured> {
         if cells.len() < 6 {
             continue;
         }
+        if let (true, Some(last)) = (cells[2].ends_with("item/s"), found.last_mut()) {
+            set_time_per_item(last, cells[2]);
+            continue;
+        }
         let (name, fastest) = cells[0].split_once("  ").unwrap_or((cells[0], ""));
         path.truncate(depth);
         path.push(name.trim().to_owned());
@@ -95,6 +177,21 @@ fn parse(text: &str) -> Vec<Measured> {
         }
     }
     found
+}
+
+/// Replaces the time of many items by that of one, from so many items a second.
+fn set_time_per_item(measured: &mut Measured, rate: &str) {
+    let Some((number, unit)) = rate.split_once(' ') else { return };
+    let scale = match unit {
+        "item/s" => 1.0,
+        "Kitem/s" => 1e3,
+        "Mitem/s" => 1e6,
+        "Gitem/s" => 1e9,
+        _ => return,
+    };
+    if let Ok(number) = number.parse::<f64>() {
+        measured.median = format!("{:.1} ns", 1e9 / (number * scale));
+    }
 }
 
 fn page(measured: &[Measured], machine: &str, today: &str) -> String {
@@ -171,6 +268,13 @@ mod tests {
         ];
         let expected = expected.map(|(b, m)| Measured { bench: b.into(), median: m.into() });
         assert_eq!(found, expected);
+    }
+
+    #[test]
+    fn a_rate_becomes_the_time_of_one_item() {
+        let mut counted = Measured { bench: "lookup".into(), median: "40 µs".into() };
+        set_time_per_item(&mut counted, "25 Mitem/s");
+        assert_eq!(counted.median, "40.0 ns");
     }
 
     #[test]
