@@ -23,6 +23,14 @@ pub enum IlluminantError {
     /// The CSV text is not a spectrum.
     #[error(transparent)]
     Csv(#[from] SpectrumCsvError),
+    /// A power is below zero.
+    #[error("power {found} at {wavelength_nm} nm, expected 0 or more")]
+    Negative {
+        /// Where, nm.
+        wavelength_nm: f64,
+        /// The power given.
+        found: f64,
+    },
     /// The light is dark where the eye sees.
     #[error("no power between 360 and 830 nm, expected some")]
     Invisible,
@@ -71,9 +79,13 @@ impl Illuminant {
     ///
     /// # Errors
     ///
-    /// [`IlluminantError::Invisible`] if it has no power from 360 to 830 nm.
+    /// [`IlluminantError`] if a power is negative or there is none from 360 to 830 nm.
     pub fn from_spectrum(name: &str, power: &Spectrum) -> Result<Self, IlluminantError> {
         let power = power.resampled(Grid::FINE);
+        let samples = Grid::FINE.wavelengths_nm().zip(power.values());
+        if let Some((wavelength_nm, &found)) = samples.into_iter().find(|(_, p)| **p < 0.0) {
+            return Err(IlluminantError::Negative { wavelength_nm, found });
+        }
         let first_visible = 60;
         if power.values()[first_visible..].iter().all(|&p| p <= 0.0) {
             return Err(IlluminantError::Invisible);
@@ -197,6 +209,15 @@ mod tests {
             Illuminant::named("F11").unwrap_err().to_string(),
             "unknown illuminant \"F11\", expected D65, D60, D55, D50, A, E, or a CSV file"
         );
+    }
+
+    #[test]
+    fn a_light_that_takes_power_is_refused() {
+        let mut values = vec![1.0; Grid::FINE.len()];
+        values[100] = -0.5;
+        let dark = Spectrum::new(Grid::FINE, values).unwrap();
+        let refused = Illuminant::from_spectrum("dark", &dark).unwrap_err();
+        assert_eq!(refused.to_string(), "power -0.5 at 400 nm, expected 0 or more");
     }
 
     #[test]

@@ -402,6 +402,19 @@ mod tests {
         assert_eq!((flat.at(830.1), flat.at(f64::NAN)), (0.0, 0.0));
     }
 
+    proptest::proptest! {
+        #[test]
+        fn no_text_makes_the_reader_panic(
+            cells in proptest::collection::vec("[0-9.,eE+# \\-naif]{0,12}", 0..40),
+        ) {
+            let text = format!("wavelength_nm,power\n{}", cells.join("\n"));
+            // Whatever comes back: an error, or a spectrum of finite samples.
+            if let Ok(spectrum) = read(&text) {
+                proptest::prop_assert!(spectrum.values().iter().all(|v| v.is_finite()));
+            }
+        }
+    }
+
     #[test]
     fn each_fault_is_named_with_its_line() {
         let good = csv(5, |_| "1".into());

@@ -439,6 +439,48 @@ mod tests {
         }
     }
 
+    /// A whole file with a right checksum around a header that was edited.
+    fn with_header(edit: impl Fn(&str) -> String) -> Result<Cube, ReadCubeError> {
+        let cube = cube();
+        let mut tensors = cube.tensors();
+        let names = tensors.iter().map(|t| t.name.to_owned()).collect();
+        let header = edit(&serde_json::to_string(&Header::of(&cube, names)).unwrap());
+        let content = tensors.iter().map(|t| (t.name, t.dtype, &t.shape[..], &t.bytes[..]));
+        let sum = checksum(&header, content);
+        tensors.push(Tensor::of_bytes(CHECKSUM, vec![sum.len()], sum));
+        let metadata = HashMap::from([(ENTRY.to_owned(), header)]);
+        let views = tensors.iter().map(|t| (t.name, t));
+        Cube::from_bytes(&safetensors::serialize(views, Some(metadata)).unwrap())
+    }
+
+    #[test]
+    fn a_header_that_lies_is_refused_by_field() {
+        let message = |from: &str, to: &str| {
+            with_header(|header| {
+                assert!(header.contains(from), "{header}");
+                header.replacen(from, to, 1)
+            })
+            .unwrap_err()
+            .to_string()
+        };
+        assert_eq!(with_header(str::to_owned).unwrap(), cube());
+        assert_eq!(
+            message("\"format_version\":1", "\"format_version\":2"),
+            "format version 2, expected 1"
+        );
+        assert_eq!(
+            message("\"resolution\":3", "\"resolution\":100000"),
+            "resolution 100000, expected 2 to 256"
+        );
+        assert_eq!(
+            message("\"resolution\":3", "\"resolution\":4"),
+            "tensor reflectance is F32 [3, 3, 3, 3], expected F32 [4, 4, 4, 3]"
+        );
+        assert!(message("\"bradford\"", "\"cat02\"").starts_with("header field adaptation is"));
+        assert!(message("[0.713,0.293]", "[0.165,0.83]").starts_with("header field rgb_space is"));
+        assert!(message("\"resolution\":3", "\"resolution\":-3").starts_with("header: "));
+    }
+
     #[test]
     fn the_message_says_what_was_found_and_expected() {
         let message = |bytes: &[u8]| Cube::from_bytes(bytes).unwrap_err().to_string();

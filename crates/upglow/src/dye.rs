@@ -56,6 +56,18 @@ pub enum DyeSetError {
         /// The greatest sample.
         peak: f64,
     },
+    /// A sample of a curve is below zero.
+    #[error("dye {dye}: the {curve} is {found} at {wavelength_nm} nm, expected 0 or more")]
+    Negative {
+        /// The dye.
+        dye: String,
+        /// Which curve.
+        curve: &'static str,
+        /// Where, nm.
+        wavelength_nm: f64,
+        /// The sample.
+        found: f64,
+    },
     /// A quantum yield in the folder's list is not a fraction.
     #[error("{}: quantum yield {found:?} of {dye}, expected a number from 0 to 1 or nothing", path.display())]
     QuantumYield {
@@ -79,14 +91,15 @@ impl DyeSet {
     ///
     /// # Errors
     ///
-    /// [`DyeSetError`] if there is no dye or more than 255, or a curve's peak is not in 0..1.
+    /// [`DyeSetError`] if there is no dye or more than 255, or a curve is negative somewhere or
+    /// peaks outside 0..1.
     pub fn new(name: &str, dyes: Vec<MeasuredDye>) -> Result<Self, DyeSetError> {
         if dyes.is_empty() || dyes.len() > MOST_DYES {
             return Err(DyeSetError::Count { found: dyes.len() });
         }
         for dye in &dyes {
-            check_peak(dye, "absorption", &dye.absorption, 1.0)?;
-            check_peak(dye, "emission", &dye.emission, f64::INFINITY)?;
+            check_curve(dye, "absorption", &dye.absorption, 1.0)?;
+            check_curve(dye, "emission", &dye.emission, f64::INFINITY)?;
         }
         Ok(Self { name: name.into(), dyes })
     }
@@ -139,12 +152,16 @@ impl DyeSet {
 
 const PROVENANCE: &str = "PROVENANCE.csv";
 
-fn check_peak(
+fn check_curve(
     dye: &MeasuredDye,
     curve: &'static str,
     samples: &Spectrum,
     limit: f64,
 ) -> Result<(), DyeSetError> {
+    let mut sampled = samples.grid().wavelengths_nm().zip(samples.values());
+    if let Some((wavelength_nm, &found)) = sampled.find(|(_, v)| **v < 0.0) {
+        return Err(DyeSetError::Negative { dye: dye.name.clone(), curve, wavelength_nm, found });
+    }
     let peak = samples.values().iter().copied().fold(f64::NEG_INFINITY, f64::max);
     if peak > 0.0 && peak <= limit {
         return Ok(());
