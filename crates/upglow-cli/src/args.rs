@@ -76,6 +76,7 @@ pub(crate) struct ReproduceArgs {
 }
 
 #[derive(Clone, Debug, clap::Args)]
+#[command(allow_negative_numbers = true)]
 pub(crate) struct BuildArgs {
     /// Cube to write
     #[arg(long, short, value_name = "FILE")]
