@@ -130,7 +130,7 @@ fn command_lines_that_do_not_fit() {
         ("build --resolution 1 -o x", "--resolution: 1, expected a whole number from 2 to 256"),
         ("build --resolution x -o x", "--resolution: \"x\", expected a whole number from 2 to 256"),
         ("build --threads 0 -o x", "--threads: \"0\", expected a whole number from 1 to 1024"),
-        ("build --sweeps -1 -o x", "unexpected argument '-1' found"),
+        ("build --sweeps -1 -o x", "--sweeps: \"-1\", expected a whole number of 0 or more"),
         (
             "build --slope-max-per-nm 0 -o x",
             "--slope-max-per-nm: slope limit 0/nm, expected 0.0001",
