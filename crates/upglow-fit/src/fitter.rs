@@ -50,8 +50,8 @@ pub enum ColorError {
     },
 }
 
-/// A color is matched, and needs no more fluorescence, at this CIEDE2000: a fiftieth of what an
-/// eye can tell.
+/// A color is matched, and needs no more fluorescence, at this CIEDE2000: a hundredth of what
+/// an eye can tell.
 pub(crate) const EXACT: f64 = 0.01;
 
 /// Single precision rounds a slope by 6e-8 of itself; fits stay below the limit by more.

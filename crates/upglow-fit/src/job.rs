@@ -89,7 +89,7 @@ impl Job<'_> {
     }
 
     /// What the solver found, with its evaluations added to the fitter's.
-    pub(crate) fn counted<const N: usize>(&self, found: Summary<N>) -> [f64; N] {
+    fn counted<const N: usize>(&self, found: Summary<N>) -> [f64; N] {
         self.fitter.count(found.evaluations);
         found.x
     }

@@ -3,6 +3,7 @@
 use upglow_color::{Contract, LinearRgb};
 
 use crate::interpolation::tetrahedron;
+use crate::lookup_table::to_single;
 use crate::{Edge, Fluorescence, Interpolation, Material, Mixture, Model};
 
 /// Materials for every node of a regular grid over linear RGB 0..=1, in single precision.
@@ -270,10 +271,4 @@ impl Node {
             Model::Analytic(_) => fraction("the concentration", third),
         }
     }
-}
-
-/// The nearest number in single precision.
-#[expect(clippy::cast_possible_truncation, reason = "rounding is what it is for")]
-fn to_single(value: f64) -> f32 {
-    value as f32
 }
