@@ -44,11 +44,28 @@ pub fn lab_jacobian(xyz: Xyz, white: Xyz) -> (Lab, Matrix3) {
 /// The compressed response to `t`, and its derivative.
 fn compress(t: f64) -> (f64, f64) {
     if t > LINEAR_BELOW {
-        let root = t.cbrt();
+        let root = cube_root(t);
         (root, root / (3.0 * t))
     } else {
         (LINEAR_SLOPE * t + 16.0 / 116.0, LINEAR_SLOPE)
     }
+}
+
+/// From which the bits of a number, divided by 3, leave those of its inverse cube root within 3.5 %.
+/// Further off, three steps are too few.
+const INVERSE_ROOT_BITS: u64 = 0x553e_f0ff_289d_d796;
+
+/// The cube root of a normal positive number, within two units of the last digit.
+///
+/// Halley's steps to the inverse root need no division, and those of three channels overlap; the
+/// library's root, exact to the last bit, was a twelfth of a whole build.
+fn cube_root(t: f64) -> f64 {
+    let mut inverse = f64::from_bits(INVERSE_ROOT_BITS - t.to_bits() / 3);
+    for _ in 0..3 {
+        let off = 1.0 - t * inverse * inverse * inverse;
+        inverse += inverse * off * (1.0 / 3.0 + 2.0 / 9.0 * off);
+    }
+    t * inverse * inverse
 }
 
 impl Lab {
@@ -70,6 +87,17 @@ mod tests {
         // Rounding only.
         assert!(lab_from_xyz(WHITE, WHITE).de76(Lab { l: 100.0, a: 0.0, b: 0.0 }) < 1e-12);
         assert!(lab_from_xyz(Xyz::default(), WHITE).de76(Lab::default()) < 1e-12);
+    }
+
+    #[test]
+    fn the_cube_root_is_the_cube_root() {
+        // Two units of the last digit; the library's own is right to half of one.
+        const ROUNDING: f64 = 4.5e-16;
+        // Three octaves are what the first guess repeats after; the rest shows the ends.
+        for step in 0..40_000 {
+            let t = LINEAR_BELOW * (f64::from(step) * 2e-4).exp();
+            assert!((cube_root(t) / t.cbrt() - 1.0).abs() <= ROUNDING, "{t}");
+        }
     }
 
     #[test]

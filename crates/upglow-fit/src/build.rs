@@ -1,5 +1,6 @@
 //! Builds cubes.
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
@@ -7,6 +8,7 @@ use upglow::{Cube, CubeError, FitRecord, Model, Node};
 use upglow_color::{Contract, LinearRgb, Metric};
 
 use crate::fitter::EXACT;
+use crate::lattice::Lattice;
 use crate::{Fit, FitOptions, FitOptionsError, Fitter, Progress, Watch};
 
 /// Why no cube was built.
@@ -26,9 +28,12 @@ pub enum BuildError {
 
 /// Fits a material for every node of a cube, on all threads of the current rayon pool.
 ///
-/// First each node alone; then, in as many sweeps as the options say, each node that missed its
-/// color tries the materials of its six neighbors, as they were before the sweep. So the result
-/// does not depend on the number of threads.
+/// First a coarse lattice, each node alone; then twice the nodes between, each from the materials
+/// at the corners of its cell; then, in as many sweeps as the options say, each node that missed
+/// its color tries the materials of its six neighbors, as they were before the sweep. So the result
+/// does not depend on the number of threads. [`Method::Exhaustive`](crate::Method::Exhaustive) and
+/// [`Method::Seed`](crate::Method::Seed) fit every
+/// node alone.
 ///
 /// # Errors
 ///
@@ -40,11 +45,9 @@ pub fn build_cube(
     resolution: usize,
     watch: &dyn Watch,
 ) -> Result<Cube, BuildError> {
-    let lattice = Lattice::new(resolution)?;
+    let lattice = Lattice::try_new(resolution)?;
     let fitter = Fitter::new(contract, model, options)?;
-    let mut fits = each_node(lattice, "fitting", watch, |index| {
-        fitter.fit(lattice.rgb(index)).expect("nodes are in 0..=1")
-    })?;
+    let mut fits = fit_by_levels(&fitter, lattice, watch)?;
     let mut moved = vec![true; lattice.len()];
     for _ in 0..options.sweeps {
         let before = fits;
@@ -69,46 +72,65 @@ pub fn build_cube(
     Ok(Cube::new(contract.clone(), model.clone(), fit, resolution, nodes)?)
 }
 
-/// The nodes of a cube, `[blue][green][red]`.
-#[derive(Clone, Copy, Debug)]
-struct Lattice {
-    resolution: usize,
-}
-
-impl Lattice {
-    fn new(resolution: usize) -> Result<Self, CubeError> {
-        let [least, most] = Cube::RESOLUTIONS;
-        if (least..=most).contains(&resolution) {
-            Ok(Self { resolution })
-        } else {
-            Err(CubeError::Resolution { found: resolution })
-        }
+/// Fits every node: the coarsest level alone, each finer one from the materials around its nodes.
+fn fit_by_levels(
+    fitter: &Fitter,
+    lattice: Lattice,
+    watch: &dyn Watch,
+) -> Result<Vec<Fit>, BuildError> {
+    let tally = Tally::new("fitting", lattice.len(), watch);
+    let mut fits = vec![None; lattice.len()];
+    for level in lattice.levels() {
+        let nodes = level.nodes();
+        let found = tally.each(nodes.len(), |i| {
+            let around: Vec<Fit> = level.around(nodes[i]).filter_map(|node| fits[node]).collect();
+            fitter.fit_among(lattice.rgb(nodes[i]), &around)
+        })?;
+        nodes.into_iter().zip(found).for_each(|(node, fit)| fits[node] = Some(fit));
     }
-
-    fn len(self) -> usize {
-        self.resolution.pow(3)
-    }
-
-    fn rgb(self, index: usize) -> LinearRgb {
-        let n = self.resolution;
-        let last = (n - 1) as f64;
-        LinearRgb([index % n, index / n % n, index / (n * n)].map(|i| i as f64 / last))
-    }
-
-    /// The up to six nodes beside one.
-    fn neighbors(self, index: usize) -> impl Iterator<Item = usize> {
-        let n = self.resolution;
-        [1, n, n * n].into_iter().flat_map(move |stride| {
-            let place = index / stride % n;
-            let below = (place > 0).then(|| index - stride);
-            let above = (place + 1 < n).then(|| index + stride);
-            below.into_iter().chain(above)
-        })
-    }
+    Ok(fits.into_iter().map(|fit| fit.expect("the levels hold every node")).collect())
 }
 
 /// How many nodes a thread takes at a time: enough that telling progress costs nothing.
 const BATCH: usize = 64;
+
+/// The work of one stage: done in parallel, told to a watcher, given up when it says so.
+struct Tally<'w> {
+    stage: &'static str,
+    done: AtomicUsize,
+    total: usize,
+    watch: &'w dyn Watch,
+}
+
+impl<'w> Tally<'w> {
+    fn new(stage: &'static str, total: usize, watch: &'w dyn Watch) -> Self {
+        Self { stage, done: AtomicUsize::new(0), total, watch }
+    }
+
+    /// `work` for each of `count` numbers, in their order.
+    fn each<T: Send + Copy>(
+        &self,
+        count: usize,
+        work: impl Fn(usize) -> T + Sync,
+    ) -> Result<Vec<T>, BuildError> {
+        let batches: Option<Vec<Vec<T>>> = (0..count.div_ceil(BATCH))
+            .into_par_iter()
+            .map(|batch| self.batch(batch * BATCH..count.min((batch + 1) * BATCH), &work))
+            .collect();
+        batches.map(|batches| batches.concat()).ok_or(BuildError::Stopped)
+    }
+
+    fn batch<T>(&self, range: Range<usize>, work: impl Fn(usize) -> T) -> Option<Vec<T>> {
+        if self.watch.stopped() {
+            return None;
+        }
+        let finished = range.len();
+        let results = range.map(work).collect();
+        let done = self.done.fetch_add(finished, Ordering::Relaxed) + finished;
+        self.watch.progress(Progress { stage: self.stage, done, total: self.total });
+        Some(results)
+    }
+}
 
 /// `work` for each node, in the order of the nodes.
 fn each_node<T: Send + Copy>(
@@ -117,23 +139,7 @@ fn each_node<T: Send + Copy>(
     watch: &dyn Watch,
     work: impl Fn(usize) -> T + Sync,
 ) -> Result<Vec<T>, BuildError> {
-    let total = lattice.len();
-    let done = AtomicUsize::new(0);
-    let batches: Option<Vec<Vec<T>>> = (0..total.div_ceil(BATCH))
-        .into_par_iter()
-        .map(|batch| {
-            if watch.stopped() {
-                return None;
-            }
-            let range = batch * BATCH..total.min((batch + 1) * BATCH);
-            let finished = range.len();
-            let results = range.map(&work).collect();
-            let done = done.fetch_add(finished, Ordering::Relaxed) + finished;
-            watch.progress(Progress { stage, done, total });
-            Some(results)
-        })
-        .collect();
-    batches.map(|batches| batches.concat()).ok_or(BuildError::Stopped)
+    Tally::new(stage, lattice.len(), watch).each(lattice.len(), work)
 }
 
 /// One node in a sweep: what it had, or better from its neighbors.

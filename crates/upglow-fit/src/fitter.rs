@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use upglow::{Edge, Fluorescence, Material, Model, ModelOnGrid};
-use upglow_color::{Contract, Grid, LinearRgb, Xyz};
+use upglow_color::{Contract, Grid, Lab, LinearRgb, Xyz};
 
 use crate::job::Job;
 use crate::problem::Shape;
@@ -34,6 +34,8 @@ pub struct Fit {
     pub distance: f64,
     /// CIEDE2000 of the material against the color, under the contract, sums over 5 nm.
     pub de2000: f64,
+    /// CIELAB of the material under the contract, sums over 5 nm.
+    pub lab: Lab,
 }
 
 /// Why a color cannot be fitted.
@@ -58,6 +60,11 @@ pub(crate) const EXACT: f64 = 0.01;
 const SLOPE_MARGIN: f64 = 1e-6;
 
 impl Fit {
+    /// Whether an eye sees no difference at all from the color.
+    pub(crate) fn is_matched(&self) -> bool {
+        self.de2000 <= EXACT
+    }
+
     /// The material.
     pub fn material(&self) -> Material {
         Material { reflectance: self.reflectance.to_sigmoid(), fluorescence: self.fluorescence }
@@ -144,12 +151,17 @@ impl Fitter {
                 return Err(ColorError::Outside { channel, value });
             }
         }
+        Ok(self.fit_among(rgb, &[]))
+    }
+
+    /// The material of `rgb`, which is in 0..=1, found from those of colors around it.
+    pub(crate) fn fit_among(&self, rgb: LinearRgb, around: &[Fit]) -> Fit {
         let job = self.job(self.model.colorimetry().xyz_from_rgb(rgb));
-        Ok(job.gray().unwrap_or_else(|| match self.options.method {
-            Method::Search => job.search(),
+        job.gray().unwrap_or_else(|| match self.options.method {
+            Method::Search => job.search(around),
             Method::Exhaustive => job.search_exhaustively(),
             Method::Seed(parameters) => job.seed_first(parameters),
-        }))
+        })
     }
 
     /// The best of `known` and of what the materials of neighbors lead to.

@@ -45,7 +45,8 @@ impl Job<'_> {
             Metric::De2000 => de2000,
             _ => self.goal.distance(color),
         };
-        Fit { reflectance, fluorescence, distance, de2000 }
+        let lab = self.fitter.model.colorimetry().lab_from_xyz(color);
+        Fit { reflectance, fluorescence, distance, de2000, lab }
     }
 
     /// The coordinates in which the slope limit is a bound.

@@ -1,6 +1,6 @@
 //! The way from colors to materials: fits one color, builds whole cubes, verifies what was built.
 //!
-//! - one color: [`Fitter`], [`Fit`], [`Standing`]
+//! - one color: [`Fitter`], [`Fit`], [`Standing`]; millions of them: [`StandingTable`]
 //! - a cube: [`build_cube`], [`CubeSummary`], [`verify`]
 //! - underneath: [`solve`], a bounded Levenberg-Marquardt solver for [`Residuals`]
 //!
@@ -25,6 +25,7 @@
 mod build;
 mod fitter;
 mod job;
+mod lattice;
 mod least;
 mod options;
 mod parabola;

@@ -22,8 +22,8 @@ pub struct FitOptions {
 /// How materials are searched for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Method {
-    /// Reflectance alone where that is enough; else the best of a table of starts, with the least
-    /// fluorescence that shows the color.
+    /// Reflectance alone where that is enough; else the best of what starts lead to, the materials
+    /// around a node or a table's, with the least fluorescence that shows the color.
     #[default]
     Search,
     /// As `Search`, but following a hundred starts and more to their end: the yardstick for it.
