@@ -178,6 +178,22 @@ mod tests {
     }
 
     #[test]
+    fn the_widest_vectors_give_the_bits_that_the_plain_ones_give() {
+        let model = models().pop().unwrap();
+        let mut random = Random::new(5);
+        let nodes = (0..125).map(|_| random.node(&model)).collect();
+        let cube = Cube::new(Contract::default(), model, FitRecord::default(), 5, nodes).unwrap();
+        let wide = cube.color_table(&Contract::default().on(Grid::FIT));
+        let plain = ColorTable { level: Level::baseline(), ..wide.clone() };
+        let rgb: Vec<[f32; 3]> =
+            (0..1000).map(|_| [(); 3].map(|()| to_single(random.unit()))).collect();
+        let mut xyz = [vec![[0.0; 3]; rgb.len()], vec![[0.0; 3]; rgb.len()]];
+        assert_eq!(wide.xyz(&rgb, &mut xyz[0]), Ok(0));
+        assert_eq!(plain.xyz(&rgb, &mut xyz[1]), Ok(0));
+        assert_eq!(xyz[0], xyz[1]);
+    }
+
+    #[test]
     fn what_is_outside_has_no_color_and_is_counted() {
         let nodes = vec![crate::Node::default(); 8];
         let model = crate::Model::Reflectance;

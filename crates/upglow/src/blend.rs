@@ -1,17 +1,26 @@
 //! The material of one color in single precision, ready to evaluate.
 
-use crate::lookup_table::{LookupTable, PackedNode, greater_of, smaller_of, to_single};
+use fearless_simd::prelude::*;
+use fearless_simd::{Level, Simd, dispatch, f32x4, f32x8};
+
+use crate::curve_table::{Curves, DyeNumbers};
+use crate::inverse_root::{twice_inverse_root, twice_inverse_root8};
+use crate::lookup_table::{LookupTable, PackedNode, greater_of, to_single};
 use crate::{Accounting, Model};
 
 /// The four materials around a color, mixed by weight: a [`crate::Mixture`] for inner loops.
 ///
-/// Every answer is within 1e-5 of the mixture's, and none panics, whatever the wavelength. Nothing
-/// is allocated, and a look-up, an evaluation or a draw takes tens of nanoseconds at most.
+/// Every answer is within 1e-5 of the mixture's at wavelengths from 0 to 10 000 nm; farther out it
+/// is that of the nearer end. None panics, whatever the wavelength. Nothing is allocated, and a
+/// look-up, an evaluation or a draw takes tens of nanoseconds at most.
 #[derive(Clone, Copy, Debug)]
 pub struct Blend<'t> {
     pub(crate) table: &'t LookupTable,
     /// Whether any of the four fluoresces.
-    fluorescent: bool,
+    pub(crate) fluorescent: bool,
+    /// The first dye of all corners that fluoresce, if it is the same: their curves are then read
+    /// once.
+    common_dye: Option<u32>,
     pub(crate) weights: [f32; 4],
     edge_nm: [f32; 4],
     /// Coefficients of 1, d and d², `[coefficient][corner]`.
@@ -20,23 +29,48 @@ pub struct Blend<'t> {
     pub(crate) fluorescence: [[f32; 4]; 4],
 }
 
-/// A number for each lobe, `[lobe][corner]`: pooled dyes and bells have one, separate dyes two.
-pub(crate) type PerLobe = [[f32; 4]; 2];
+/// A number for each lobe, `[lobe]`, of each corner: pooled dyes and bells have one lobe, separate
+/// dyes two.
+pub(crate) type PerLobe<S> = [f32x4<S>; 2];
+
+/// The wavelengths that are told apart, nm: beyond them, parabolas overflow.
+const FARTHEST_NM: f32 = 1e4;
+
+/// The processor's instructions that every target has: one wavelength fills one vector.
+macro_rules! with_baseline {
+    ($simd:ident => $answer:expr) => {
+        dispatch!(Level::baseline(), $simd => $answer)
+    };
+}
+pub(crate) use with_baseline;
+
+/// The widest instructions of this processor: several wavelengths fill several vectors. What is
+/// called in there must be inlined, or it is compiled for the baseline: closures, and so `map` of an
+/// array, often are not.
+macro_rules! in_vectors {
+    ($blend:ident, $simd:ident => $answer:expr) => {
+        dispatch!($blend.table.level, $simd => $simd.vectorize(
+            #[inline(always)]
+            || $answer
+        ))
+    };
+}
 
 impl<'t> Blend<'t> {
     #[inline(always)]
     pub(crate) fn new(table: &'t LookupTable, weights: [f32; 4], nodes: [PackedNode; 4]) -> Self {
         let parabola = |number: usize| nodes.map(|node| node.parabola[number]);
         let fluorescence = |number: usize| nodes.map(|node| node.fluorescence[number]);
-        let concentration = fluorescence(1);
+        let [concentration, last] = [fluorescence(1), fluorescence(3)];
         Self {
             table,
             fluorescent: concentration[0] + concentration[1] + concentration[2] + concentration[3]
                 > 0.0,
+            common_dye: common_dye(concentration, last),
             weights,
             edge_nm: parabola(0),
             parabola: [parabola(1), parabola(2), parabola(3)],
-            fluorescence: [fluorescence(0), concentration, fluorescence(2), fluorescence(3)],
+            fluorescence: [fluorescence(0), concentration, fluorescence(2), last],
         }
     }
 
@@ -49,94 +83,167 @@ impl<'t> Blend<'t> {
     /// Share of incident light at `lambda_nm` that is reflected at the same wavelength, 0..=1.
     #[inline]
     pub fn reflectance(&self, lambda_nm: f32) -> f32 {
-        self.reflectance_through(lambda_nm, &self.pairs_absorbed(lambda_nm))
+        with_baseline!(simd => {
+            self.reflectance_through(simd, lambda_nm, self.pairs_absorbed(simd, lambda_nm))
+        })
     }
 
     /// The reflectance behind what the lobes absorb.
     #[inline(always)]
-    pub(crate) fn reflectance_through(&self, lambda_nm: f32, absorbed: &PerLobe) -> f32 {
-        let mut shown = [0.0; 4];
-        for i in 0..4 {
-            let d = lambda_nm - self.edge_nm[i];
-            let x = self.parabola[0][i] + d * (self.parabola[1][i] + d * self.parabola[2][i]);
-            shown[i] = self.weights[i] * (1.0 - (absorbed[0][i] + absorbed[1][i])) * sigmoid(x);
-        }
-        sum(shown)
+    pub(crate) fn reflectance_through<S: Simd>(
+        &self,
+        simd: S,
+        lambda_nm: f32,
+        [one, two]: PerLobe<S>,
+    ) -> f32 {
+        let [weights, edge_nm, constant, linear, quadratic] = self.reflectance_numbers();
+        let [weights, edge_nm] = [load(simd, weights), load(simd, edge_nm)];
+        let constant = load(simd, constant);
+        let [linear, quadratic] = [load(simd, linear), load(simd, quadratic)];
+        let d = within_range(f32x4::splat(simd, lambda_nm)) - edge_nm;
+        let x: f32x4<S> = d.mul_add(d.mul_add(quadratic, linear), constant);
+        let root = twice_inverse_root(simd, x.mul_add(x, f32x4::splat(simd, 1.0)));
+        let shown = (0.25 * x).mul_add(root, f32x4::splat(simd, 0.5));
+        let passed = f32x4::splat(simd, 1.0) - (one + two);
+        sum(weights * passed * shown).max(0.0)
     }
 
     /// [`Blend::reflectance`] at four wavelengths, nm.
     #[inline]
     pub fn reflectance4(&self, lambda_nm: [f32; 4]) -> [f32; 4] {
-        self.reflectances(lambda_nm)
+        if self.fluorescent {
+            self.fluorescent_four(&lambda_nm)
+        } else {
+            self.passive_four(&lambda_nm)
+        }
     }
 
     /// [`Blend::reflectance`] at eight wavelengths, nm.
     #[inline]
     pub fn reflectance8(&self, lambda_nm: [f32; 8]) -> [f32; 8] {
-        self.reflectances(lambda_nm)
+        let [a, b, c, d, e, f, g, h] = lambda_nm;
+        // In two halves: one load of what was stored in two would have to wait for the cache.
+        let (low, high) = ([a, b, c, d], [e, f, g, h]);
+        if self.fluorescent {
+            self.fluorescent_eight(&low, &high)
+        } else {
+            self.passive_eight(&low, &high)
+        }
     }
 
-    /// Plain arrays, which compile to vectors of four on every x86-64. Wider ones, chosen at run
-    /// time, take a call for each material; inside this crate they gained nothing.
-    #[inline(always)]
-    fn reflectances<const N: usize>(&self, lambda_nm: [f32; N]) -> [f32; N] {
-        let mut total = [0.0; N];
-        if !self.fluorescent {
+    /// Four corners at two wavelengths to a vector. Passive materials have functions of their own:
+    /// those need not save registers.
+    fn passive_four(&self, lambda_nm: &[f32; 4]) -> [f32; 4] {
+        in_vectors!(self, simd => {
+            let [a, b, c, d] = self.shown_by_all(simd, lambda_nm);
+            sums([a, b, c, d]).max(0.0).into()
+        })
+    }
+
+    fn fluorescent_four(&self, lambda_nm: &[f32; 4]) -> [f32; 4] {
+        in_vectors!(self, simd => {
+            let [a, b, c, d] = self.shown_by_all(simd, lambda_nm);
+            let passed = self.passed(simd, within_range(f32x4::from_slice(simd, lambda_nm)));
+            let [e, f, g, h] = transposed(passed);
+            sums([a * e, b * f, c * g, d * h]).max(0.0).into()
+        })
+    }
+
+    /// Eight wavelengths of one corner to a vector.
+    fn passive_eight(&self, low_nm: &[f32; 4], high_nm: &[f32; 4]) -> [f32; 8] {
+        in_vectors!(self, simd => {
+            let nm = within_range(f32x4::from_slice(simd, low_nm))
+                .combine(within_range(f32x4::from_slice(simd, high_nm)));
+            let mut total = f32x8::splat(simd, 0.0);
             for i in 0..4 {
-                let shown = self.shown(i, lambda_nm);
-                (0..N).for_each(|k| total[k] += self.weights[i] * shown[k]);
+                total += shown(simd, nm, self.corner(simd, i));
             }
-            return total;
-        }
-        let absorbed = self.absorbed(lambda_nm);
-        for i in 0..4 {
-            let shown = self.shown(i, lambda_nm);
-            (0..N).for_each(|k| total[k] += self.weights[i] * (1.0 - absorbed[i][k]) * shown[k]);
-        }
-        total
+            total.max(0.0).into()
+        })
     }
 
-    /// The reflectance of one corner where nothing is absorbed.
-    #[inline(always)]
-    fn shown<const N: usize>(&self, i: usize, lambda_nm: [f32; N]) -> [f32; N] {
-        let [constant, linear, quadratic] = self.parabola.map(|c| c[i]);
-        let edge_nm = self.edge_nm[i];
-        let mut shown = [0.0; N];
-        for k in 0..N {
-            let d = lambda_nm[k] - edge_nm;
-            shown[k] = sigmoid(constant + d * (linear + d * quadratic));
-        }
-        shown
+    fn fluorescent_eight(&self, low_nm: &[f32; 4], high_nm: &[f32; 4]) -> [f32; 8] {
+        in_vectors!(self, simd => {
+            let low_nm = within_range(f32x4::from_slice(simd, low_nm));
+            let high_nm = within_range(f32x4::from_slice(simd, high_nm));
+            let (low, high) = (self.passed(simd, low_nm), self.passed(simd, high_nm));
+            let nm = low_nm.combine(high_nm);
+            let mut total = f32x8::splat(simd, 0.0);
+            for i in 0..4 {
+                total += low[i].combine(high[i]) * shown(simd, nm, self.corner(simd, i));
+            }
+            total.max(0.0).into()
+        })
     }
 
-    /// Share of light that each corner's fluorescence absorbs, `[corner][wavelength]`.
+    /// [`shown`] of the four corners at each of four wavelengths, `[wavelength]`.
     #[inline(always)]
-    fn absorbed<const N: usize>(&self, lambda_nm: [f32; N]) -> [[f32; N]; 4] {
-        let mut absorbed = [[0.0; N]; 4];
+    fn shown_by_all<S: Simd>(&self, simd: S, nm: &[f32; 4]) -> [f32x4<S>; 4] {
+        let mut corners = [f32x8::splat(simd, 0.0); 5];
+        let numbers = self.reflectance_numbers();
+        for k in 0..5 {
+            let four = f32x4::from_slice(simd, numbers[k]);
+            corners[k] = four.combine(four);
+        }
+        let mut at = [f32x4::splat(simd, 0.0); 4];
+        for k in [0, 2] {
+            let low = within_range(f32x4::splat(simd, nm[k]));
+            let high = within_range(f32x4::splat(simd, nm[k + 1]));
+            (at[k], at[k + 1]) = shown(simd, low.combine(high), corners).split();
+        }
+        at
+    }
+
+    /// The numbers of one corner for [`shown`].
+    #[inline(always)]
+    fn corner<S: Simd>(&self, simd: S, i: usize) -> [f32x8<S>; 5] {
+        let mut corner = [f32x8::splat(simd, 0.0); 5];
+        let numbers = self.reflectance_numbers();
+        for k in 0..5 {
+            corner[k] = f32x8::splat(simd, numbers[k][i]);
+        }
+        corner
+    }
+
+    #[inline(always)]
+    fn reflectance_numbers(&self) -> [&[f32; 4]; 5] {
+        let [constant, linear, quadratic] = &self.parabola;
+        [&self.weights, &self.edge_nm, constant, linear, quadratic]
+    }
+
+    /// Share of the light at four wavelengths that each corner's fluorescence lets pass,
+    /// `[corner]`.
+    #[inline(always)]
+    fn passed<S: Simd>(&self, simd: S, nm: f32x4<S>) -> [f32x4<S>; 4] {
+        let all = f32x4::splat(simd, 1.0);
+        let mut passed = [all; 4];
         let [first, concentration, _, last] = self.fluorescence;
         match &self.table.model {
             Model::Reflectance => {}
             Model::Dyes(_) => {
-                let rows = lambda_nm.map(|nm| self.table.curves.row(nm));
+                let curves = &self.table.curves;
+                let rows = curves.rows(simd, nm);
+                let mut pair = [all; 2];
+                if let Some(dye) = self.common_dye {
+                    pair = curves.absorption.pairs(simd, rows, [dye; 4]);
+                }
                 for i in 0..4 {
-                    let number = dye(last[i]);
-                    let pairs = rows.map(|row| self.table.curves.absorption(row, number));
-                    for k in 0..N {
-                        let [a, b] = pairs[k];
-                        absorbed[i][k] = concentration[i] * (a + first[i] * (b - a));
+                    if self.common_dye.is_none() {
+                        pair = curves.absorption.pairs(simd, rows, [dye(last[i]); 4]);
                     }
+                    let mixed = mix(pair, f32x4::splat(simd, first[i]));
+                    passed[i] = all - mixed * concentration[i];
                 }
             }
             Model::Analytic(_) => {
                 let bells = self.table.absorption_bells;
                 for i in 0..4 {
-                    for k in 0..N {
-                        absorbed[i][k] = concentration[i] * bells.at(last[i], lambda_nm[k]);
-                    }
+                    let bell = bells.at(simd, f32x4::splat(simd, last[i]), nm);
+                    passed[i] = all - bell * concentration[i];
                 }
             }
         }
-        absorbed
+        passed
     }
 
     /// Energy that comes out per nm at `out_nm` by fluorescence, per unit that came in at `in_nm`;
@@ -146,175 +253,216 @@ impl<'t> Blend<'t> {
         if !self.fluorescent {
             return 0.0;
         }
-        self.moved(&self.returned(in_nm), &self.emission(out_nm))
+        with_baseline!(simd => {
+            self.moved(simd, self.returned(simd, in_nm), self.emission(simd, out_nm))
+        })
     }
 
     /// The re-radiation for what the lobes return of one wavelength and emit at another, 1/nm.
     #[inline(always)]
-    pub(crate) fn moved(&self, returned: &PerLobe, emission: &PerLobe) -> f32 {
-        sum([0, 1, 2, 3].map(|i| {
-            self.weights[i] * (returned[0][i] * emission[0][i] + returned[1][i] * emission[1][i])
-        }))
+    pub(crate) fn moved<S: Simd>(
+        &self,
+        simd: S,
+        returned: PerLobe<S>,
+        emission: PerLobe<S>,
+    ) -> f32 {
+        let weights: f32x4<S> = self.weights.simd_into(simd);
+        sum(weights * (returned[0] * emission[0] + returned[1] * emission[1]))
     }
 
     /// Share of incident light at `in_nm` that comes out at any wavelength, 0..=1.
     #[inline]
     pub fn albedo(&self, in_nm: f32) -> f32 {
-        let absorbed = self.pairs_absorbed(in_nm);
-        let [one, two] = self.returned_of(in_nm, &absorbed);
-        let returned = [0, 1, 2, 3].map(|i| self.weights[i] * (one[i] + two[i]));
-        self.reflectance_through(in_nm, &absorbed) + sum(returned)
+        with_baseline!(simd => {
+            let absorbed = self.pairs_absorbed(simd, in_nm);
+            let [one, two] = self.returned_of(simd, in_nm, absorbed);
+            let weights: f32x4<_> = self.weights.simd_into(simd);
+            self.reflectance_through(simd, in_nm, absorbed) + sum(weights * (one + two))
+        })
+    }
+
+    /// The curves of each corner's dye and of its neighbor at one wavelength.
+    #[inline(always)]
+    fn pairs<S: Simd>(&self, simd: S, curves: &Curves, lambda_nm: f32) -> PerLobe<S> {
+        let row = self.table.curves.row(lambda_nm);
+        match self.common_dye {
+            Some(dye) => {
+                let [a, b] = curves.pair(row, dye);
+                [f32x4::splat(simd, a), f32x4::splat(simd, b)]
+            }
+            None => {
+                let [a, b, c, d] = self.fluorescence[3];
+                curves.pairs(simd, row.four_times(simd), [dye(a), dye(b), dye(c), dye(d)])
+            }
+        }
     }
 
     /// What each corner's dyes or bells absorb of light at `lambda_nm`.
     #[inline(always)]
-    pub(crate) fn pairs_absorbed(&self, lambda_nm: f32) -> PerLobe {
-        let mut absorbed = [[0.0; 4]; 2];
+    pub(crate) fn pairs_absorbed<S: Simd>(&self, simd: S, lambda_nm: f32) -> PerLobe<S> {
+        let none = f32x4::splat(simd, 0.0);
         if !self.fluorescent {
-            return absorbed;
+            return [none; 2];
         }
-        let [first, concentration, _, last] = self.fluorescence;
+        let [first, concentration, _, last] = self.corner_numbers(simd);
         match &self.table.model {
-            Model::Reflectance => {}
+            Model::Reflectance => [none; 2],
             Model::Dyes(_) => {
-                let row = self.table.curves.row(lambda_nm);
-                for i in 0..4 {
-                    let [a, b] = self.table.curves.absorption(row, dye(last[i]));
-                    absorbed[0][i] = concentration[i] * (1.0 - first[i]) * a;
-                    absorbed[1][i] = concentration[i] * first[i] * b;
-                }
+                let [a, b] = self.pairs(simd, &self.table.curves.absorption, lambda_nm);
+                let second = concentration * first;
+                [(concentration - second) * a, second * b]
             }
             Model::Analytic(_) => {
-                let bells = self.table.absorption_bells;
-                (0..4).for_each(|i| {
-                    absorbed[0][i] = concentration[i] * bells.at(last[i], lambda_nm);
-                });
+                let nm = f32x4::splat(simd, lambda_nm);
+                [concentration * self.table.absorption_bells.at(simd, last, nm), none]
             }
         }
-        absorbed
+    }
+
+    #[inline(always)]
+    fn corner_numbers<S: Simd>(&self, simd: S) -> [f32x4<S>; 4] {
+        let [a, b, c, d] = &self.fluorescence;
+        [load(simd, a), load(simd, b), load(simd, c), load(simd, d)]
     }
 
     /// What each corner's lobes return of light at `in_nm`.
     #[inline(always)]
-    pub(crate) fn returned(&self, in_nm: f32) -> PerLobe {
-        self.returned_of(in_nm, &self.pairs_absorbed(in_nm))
+    pub(crate) fn returned<S: Simd>(&self, simd: S, in_nm: f32) -> PerLobe<S> {
+        self.returned_of(simd, in_nm, self.pairs_absorbed(simd, in_nm))
     }
 
     /// What each corner's lobes return of what its dyes or bells absorbed at `in_nm`.
     #[inline(always)]
-    pub(crate) fn returned_of(&self, in_nm: f32, absorbed: &PerLobe) -> PerLobe {
-        let mut returned = [[0.0; 4]; 2];
+    pub(crate) fn returned_of<S: Simd>(
+        &self,
+        simd: S,
+        in_nm: f32,
+        [one, two]: PerLobe<S>,
+    ) -> PerLobe<S> {
+        let none = f32x4::splat(simd, 0.0);
         if !self.fluorescent {
-            return returned;
+            return [none; 2];
         }
-        let [first, _, _, last] = self.fluorescence;
+        let first: f32x4<S> = self.fluorescence[0].simd_into(simd);
         match &self.table.model {
-            Model::Reflectance => {}
+            Model::Reflectance => [none; 2],
             Model::Dyes(model) => {
                 let accounting = model.options().accounting;
-                let separate = self.table.is_separate();
-                for i in 0..4 {
-                    let [one, two] = self.table.curves.pair(dye(last[i]));
-                    let back =
-                        |yielded: f32, mean_nm: f32| yielded * share(accounting, in_nm, mean_nm);
-                    if separate {
-                        returned[0][i] =
-                            absorbed[0][i] * back(one.quantum_yield, one.mean_emission_nm);
-                        returned[1][i] =
-                            absorbed[1][i] * back(two.quantum_yield, two.mean_emission_nm);
-                    } else {
-                        let mix = |a: f32, b: f32| a + first[i] * (b - a);
-                        let yielded = mix(one.quantum_yield, two.quantum_yield);
-                        let mean_nm = mix(one.mean_emission_nm, two.mean_emission_nm);
-                        returned[0][i] = (absorbed[0][i] + absorbed[1][i]) * back(yielded, mean_nm);
-                    }
+                let yielded = self.dye_numbers(simd, |dye| dye.quantum_yield);
+                let per_mean = match accounting {
+                    Accounting::Energy => [none; 2],
+                    Accounting::Photon => self.dye_numbers(simd, |dye| dye.mean_emission_nm),
+                };
+                if self.table.is_separate() {
+                    return [
+                        one * yielded[0] * share(simd, accounting, in_nm, per_mean[0]),
+                        two * yielded[1] * share(simd, accounting, in_nm, per_mean[1]),
+                    ];
                 }
+                let mean_nm = mix(per_mean, first);
+                [(one + two) * mix(yielded, first) * share(simd, accounting, in_nm, mean_nm), none]
             }
             Model::Analytic(model) => {
-                let yielded = to_single(model.quantum_yield());
-                for i in 0..4 {
-                    let share = share(model.accounting(), in_nm, first[i]);
-                    returned[0][i] = absorbed[0][i] * yielded * share;
-                }
+                let share = share(simd, model.accounting(), in_nm, first);
+                [one * share * to_single(model.quantum_yield()), none]
             }
         }
-        returned
     }
 
-    /// Where each corner's lobes give it back, `[lobe][corner]`, 1/nm.
+    /// A number of each corner's dye and of its neighbor.
     #[inline(always)]
-    pub(crate) fn emission(&self, out_nm: f32) -> PerLobe {
-        if !self.fluorescent {
-            return [[0.0; 4]; 2];
+    fn dye_numbers<S: Simd>(&self, simd: S, number: impl Fn(&DyeNumbers) -> f32) -> PerLobe<S> {
+        let curves = &self.table.curves;
+        if let Some(dye) = self.common_dye {
+            let [one, two] = curves.pair(dye);
+            return [f32x4::splat(simd, number(one)), f32x4::splat(simd, number(two))];
         }
-        let [first, _, _, last] = self.fluorescence;
+        let mut numbers = [[0.0; 4]; 2];
+        for i in 0..4 {
+            let [one, two] = curves.pair(dye(self.fluorescence[3][i]));
+            (numbers[0][i], numbers[1][i]) = (number(one), number(two));
+        }
+        [load(simd, &numbers[0]), load(simd, &numbers[1])]
+    }
+
+    /// Where each corner's lobes give it back, 1/nm.
+    #[inline(always)]
+    pub(crate) fn emission<S: Simd>(&self, simd: S, out_nm: f32) -> PerLobe<S> {
+        let none = f32x4::splat(simd, 0.0);
+        if !self.fluorescent {
+            return [none; 2];
+        }
+        let first: f32x4<S> = self.fluorescence[0].simd_into(simd);
         match &self.table.model {
-            Model::Reflectance => [[0.0; 4]; 2],
+            Model::Reflectance => [none; 2],
             Model::Dyes(_) => {
-                let row = self.table.curves.row(out_nm);
-                let separate = self.table.is_separate();
-                let mut emission = [[0.0; 4]; 2];
-                for i in 0..4 {
-                    let [a, b] = self.table.curves.emission(row, dye(last[i]));
-                    emission[0][i] = if separate { a } else { a + first[i] * (b - a) };
-                    emission[1][i] = b;
-                }
-                emission
+                let pair = self.pairs(simd, &self.table.curves.emission, out_nm);
+                if self.table.is_separate() { pair } else { [mix(pair, first), none] }
             }
             Model::Analytic(_) => {
-                let emission = self.table.emission_bells;
-                [std::array::from_fn(|i| emission.at(first[i], out_nm)), [0.0; 4]]
+                [self.table.emission_bells.at(simd, first, f32x4::splat(simd, out_nm)), none]
             }
         }
     }
 
     /// What leaves from each lobe of light that is 1 at every wavelength, where the lobes' emission
-    /// is `emission`; `[lobe + 2·corner]`.
+    /// is `emission`.
     #[inline(always)]
-    pub(crate) fn leaving_shares(&self, emission: &PerLobe) -> [f32; 8] {
+    pub(crate) fn leaving_shares<S: Simd>(&self, simd: S, emission: PerLobe<S>) -> PerLobe<S> {
+        let none = f32x4::splat(simd, 0.0);
         if !self.fluorescent {
-            return [0.0; 8];
+            return [none; 2];
         }
-        let [weight, concentration, returned_nm, number] = self.fluorescence;
-        let separate = self.table.is_separate();
-        let mut shares = [0.0; 8];
-        for i in 0..4 {
-            let [one, two] = if separate {
-                let [one, two] = self.table.curves.pair(dye(number[i]));
-                [(1.0 - weight[i]) * one.returned_nm, weight[i] * two.returned_nm]
-                    .map(|nm| concentration[i] * nm)
-            } else {
-                [returned_nm[i], 0.0]
-            };
-            shares[2 * i] = self.weights[i] * one * emission[0][i];
-            shares[2 * i + 1] = self.weights[i] * two * emission[1][i];
+        let [weight, concentration, returned_nm, _] = self.corner_numbers(simd);
+        let weights: f32x4<S> = self.weights.simd_into(simd);
+        if !self.table.is_separate() {
+            return [weights * returned_nm * emission[0], none];
         }
-        shares
+        let [one, two] = self.dye_numbers(simd, |dye| dye.returned_nm);
+        let second = concentration * weight;
+        [
+            weights * (concentration - second) * one * emission[0],
+            weights * second * two * emission[1],
+        ]
     }
 
-    /// What leaves from each lobe of the light of which it returns `returned`;
-    /// `[lobe + 2·corner]`.
+    /// What leaves from each lobe of the light of which it returns `returned`.
     #[inline(always)]
-    pub(crate) fn arriving_shares(&self, returned: &PerLobe) -> [f32; 8] {
+    pub(crate) fn arriving_shares<S: Simd>(&self, simd: S, returned: PerLobe<S>) -> PerLobe<S> {
         if !self.fluorescent {
-            return [0.0; 8];
+            return returned;
         }
-        let [weight, _, _, number] = self.fluorescence;
-        let separate = self.table.is_separate();
-        let dyes = matches!(self.table.model, Model::Dyes(_));
-        let mut shares = [0.0; 8];
-        for i in 0..4 {
-            let [one, two] = if dyes {
-                let [one, two] = self.table.curves.pair(dye(number[i])).map(|dye| dye.emitted);
-                if separate { [one, two] } else { [one + weight[i] * (two - one), 0.0] }
-            } else {
-                [1.0, 0.0]
-            };
-            shares[2 * i] = self.weights[i] * returned[0][i] * one;
-            shares[2 * i + 1] = self.weights[i] * returned[1][i] * two;
+        let weights: f32x4<S> = self.weights.simd_into(simd);
+        let weighted = [weights * returned[0], weights * returned[1]];
+        if !matches!(self.table.model, Model::Dyes(_)) {
+            return weighted;
         }
-        shares
+        let emitted = self.dye_numbers(simd, |dye| dye.emitted);
+        if self.table.is_separate() {
+            return [weighted[0] * emitted[0], weighted[1] * emitted[1]];
+        }
+        let first: f32x4<S> = self.fluorescence[0].simd_into(simd);
+        [weighted[0] * mix(emitted, first), weighted[1]]
     }
+}
+
+/// The one first dye of the corners that fluoresce, `None` if they have several.
+#[inline(always)]
+fn common_dye(concentration: [f32; 4], number: [f32; 4]) -> Option<u32> {
+    let [a, b, c, d] = number;
+    // Nodes without fluorescence have number 0.
+    let greatest = greater_of(greater_of(a, b), greater_of(c, d));
+    let mut common = true;
+    for i in 0..4 {
+        common &= number[i] == greatest || concentration[i] == 0.0;
+    }
+    common.then_some(dye(greatest))
+}
+
+/// Numbers of two dyes, mixed by the weight of the second.
+#[inline(always)]
+fn mix<S: Simd>([one, two]: PerLobe<S>, weight: f32x4<S>) -> f32x4<S> {
+    weight.mul_add(two - one, one)
 }
 
 /// Cubic B-splines of one width in single precision.
@@ -339,19 +487,20 @@ impl Bells {
     }
 
     #[inline(always)]
-    fn at(self, center_nm: f32, nm: f32) -> f32 {
+    fn at<S: Simd>(self, simd: S, center_nm: f32x4<S>, nm: f32x4<S>) -> f32x4<S> {
         let v = (nm - center_nm).abs() * self.per_step;
         // The bell as two cubes, each of which is zero beyond its knot.
-        let (outer, inner) = (greater_of(2.0 - v, 0.0), greater_of(1.0 - v, 0.0));
+        let outer = (f32x4::splat(simd, 2.0) - v).max(0.0);
+        let inner = (f32x4::splat(simd, 1.0) - v).max(0.0);
         self.scale * (outer * outer * outer - 4.0 * inner * inner * inner)
     }
 }
 
 #[inline(always)]
-fn share(accounting: Accounting, nm: f32, mean_nm: f32) -> f32 {
+fn share<S: Simd>(simd: S, accounting: Accounting, nm: f32, mean_nm: f32x4<S>) -> f32x4<S> {
     match accounting {
-        Accounting::Energy => 1.0,
-        Accounting::Photon => (nm / mean_nm).min(1.0),
+        Accounting::Energy => f32x4::splat(simd, 1.0),
+        Accounting::Photon => (f32x4::splat(simd, nm) / mean_nm).min(1.0),
     }
 }
 
@@ -362,20 +511,53 @@ fn share(accounting: Accounting, nm: f32, mean_nm: f32) -> f32 {
     reason = "it was made from a dye's number"
 )]
 #[inline(always)]
-pub(crate) fn dye(number: f32) -> usize {
-    number as i32 as usize
-}
-
-/// Beyond this, squares overflow; at this, a reflectance is exactly 0 or 1.
-const SATURATED: f32 = 1e9;
-
-#[inline(always)]
-fn sigmoid(x: f32) -> f32 {
-    let x = greater_of(smaller_of(x, SATURATED), -SATURATED);
-    0.5 + 0.5 * x / (1.0 + x * x).sqrt()
+pub(crate) fn dye(number: f32) -> u32 {
+    number as i32 as u32
 }
 
 #[inline(always)]
-pub(crate) fn sum([a, b, c, d]: [f32; 4]) -> f32 {
+fn within_range<S: Simd>(nm: f32x4<S>) -> f32x4<S> {
+    nm.max(0.0).min(FARTHEST_NM)
+}
+
+/// Weight times reflectance where nothing is absorbed, from weight, edge (nm) and the coefficients
+/// of 1, d and d².
+#[inline(always)]
+fn shown<S: Simd>(
+    simd: S,
+    nm: f32x8<S>,
+    [weight, edge_nm, constant, linear, quadratic]: [f32x8<S>; 5],
+) -> f32x8<S> {
+    let d = nm - edge_nm;
+    let x = d.mul_add(d.mul_add(quadratic, linear), constant);
+    let root = twice_inverse_root8(simd, x.mul_add(x, f32x8::splat(simd, 1.0)));
+    weight * (0.25 * x).mul_add(root, f32x8::splat(simd, 0.5))
+}
+
+#[inline(always)]
+fn load<S: Simd>(simd: S, corners: &[f32; 4]) -> f32x4<S> {
+    f32x4::from_slice(simd, corners)
+}
+
+/// Rows and columns change places.
+#[inline(always)]
+pub(crate) fn transposed<S: Simd>([a, b, c, d]: [f32x4<S>; 4]) -> [f32x4<S>; 4] {
+    let (even, odd) = (a.interleave(c), b.interleave(d));
+    let (first, last) = (even.0.interleave(odd.0), even.1.interleave(odd.1));
+    [first.0, first.1, last.0, last.1]
+}
+
+/// The sums of four vectors.
+#[inline(always)]
+fn sums<S: Simd>([a, b, c, d]: [f32x4<S>; 4]) -> f32x4<S> {
+    let (even, odd) = (a.interleave(c), b.interleave(d));
+    let both = (even.0 + even.1).interleave(odd.0 + odd.1);
+    both.0 + both.1
+}
+
+/// The sum over the corners.
+#[inline(always)]
+pub(crate) fn sum<S: Simd>(corners: f32x4<S>) -> f32 {
+    let [a, b, c, d] = corners.into();
     (a + b) + (c + d)
 }

@@ -1,7 +1,9 @@
 //! Drawing wavelengths in proportion to what a [`Blend`] makes of them: `sampling.rs` for inner
 //! loops, with the same measure.
 
-use crate::blend::{Blend, PerLobe, dye, sum};
+use fearless_simd::{Level, Simd, dispatch};
+
+use crate::blend::{Blend, PerLobe, dye, sum, with_baseline};
 use crate::lookup_table::to_single;
 use crate::material::Lobe;
 use crate::{Draw, Fluorescence, Model, Sample};
@@ -13,27 +15,41 @@ impl<'t> Blend<'t> {
     /// `None` where nothing can leave at `out_nm`.
     #[inline]
     pub fn sample_incident(&self, out_nm: f32, u: [f32; 2]) -> Option<Sample<f32>> {
-        let emission = self.emission(out_nm);
-        let shares = self.leaving(out_nm, &emission);
-        self.sample(out_nm, shares, u, |lobe, u| {
-            let in_nm = to_single(lobe.sample_absorbed(u));
-            (in_nm, self.moved(&self.returned(in_nm), &emission))
+        with_baseline!(simd => {
+            let emission = self.emission(simd, out_nm);
+            let shares = self.leaving(simd, out_nm, emission);
+            let throughput = shares.total();
+            Some(match self.choose(shares, throughput, u[0])? {
+                None => elastic(out_nm, shares.elastic, throughput),
+                Some(lobe) => {
+                    let in_nm = to_single(lobe.sample_absorbed(u[1].into()));
+                    let moved = self.moved(simd, self.returned(simd, in_nm), emission);
+                    shifted(in_nm, moved, throughput)
+                }
+            })
         })
     }
 
     /// The density, 1/nm, with which [`Blend::sample_incident`] draws `in_nm` by fluorescence.
     #[inline]
     pub fn incident_pdf_per_nm(&self, in_nm: f32, out_nm: f32) -> f32 {
-        let emission = self.emission(out_nm);
-        let moved = self.moved(&self.returned(in_nm), &emission);
-        ratio(moved, self.leaving(out_nm, &emission).total())
+        if !self.fluorescent {
+            return 0.0;
+        }
+        with_baseline!(simd => {
+            let emission = self.emission(simd, out_nm);
+            let moved = self.moved(simd, self.returned(simd, in_nm), emission);
+            ratio(moved, self.leaving(simd, out_nm, emission).total())
+        })
     }
 
     /// The probability, 0..=1, that [`Blend::sample_incident`] keeps the wavelength.
     #[inline]
     pub fn incident_elastic_probability(&self, out_nm: f32) -> f32 {
-        let shares = self.leaving(out_nm, &self.emission(out_nm));
-        ratio(shares.elastic, shares.total())
+        with_baseline!(simd => {
+            let shares = self.leaving(simd, out_nm, self.emission(simd, out_nm));
+            ratio(shares.elastic, shares.total())
+        })
     }
 
     /// Draws the wavelength of the light that leaves, given that of incident light; see
@@ -42,64 +58,71 @@ impl<'t> Blend<'t> {
     /// `None` where nothing of the light at `in_nm` leaves.
     #[inline]
     pub fn sample_outgoing(&self, in_nm: f32, u: [f32; 2]) -> Option<Sample<f32>> {
-        let (returned, shares) = self.arriving(in_nm);
-        self.sample(in_nm, shares, u, |lobe, u| {
-            let out_nm = to_single(lobe.sample_emitted(u));
-            (out_nm, self.moved(&returned, &self.emission(out_nm)))
+        with_baseline!(simd => {
+            let (returned, shares) = self.arriving(simd, in_nm);
+            let throughput = shares.total();
+            Some(match self.choose(shares, throughput, u[0])? {
+                None => elastic(in_nm, shares.elastic, throughput),
+                Some(lobe) => {
+                    let out_nm = to_single(lobe.sample_emitted(u[1].into()));
+                    let moved = self.moved(simd, returned, self.emission(simd, out_nm));
+                    shifted(out_nm, moved, throughput)
+                }
+            })
         })
     }
 
     /// The density, 1/nm, with which [`Blend::sample_outgoing`] draws `out_nm` by fluorescence.
     #[inline]
     pub fn outgoing_pdf_per_nm(&self, in_nm: f32, out_nm: f32) -> f32 {
-        let (returned, shares) = self.arriving(in_nm);
-        ratio(self.moved(&returned, &self.emission(out_nm)), shares.total())
+        if !self.fluorescent {
+            return 0.0;
+        }
+        with_baseline!(simd => {
+            let (returned, shares) = self.arriving(simd, in_nm);
+            ratio(self.moved(simd, returned, self.emission(simd, out_nm)), shares.total())
+        })
     }
 
     /// The probability, 0..=1, that [`Blend::sample_outgoing`] keeps the wavelength.
     #[inline]
     pub fn outgoing_elastic_probability(&self, in_nm: f32) -> f32 {
-        let (_, shares) = self.arriving(in_nm);
-        ratio(shares.elastic, shares.total())
+        with_baseline!(simd => {
+            let (_, shares) = self.arriving(simd, in_nm);
+            ratio(shares.elastic, shares.total())
+        })
     }
 
     #[inline(always)]
-    fn leaving(&self, out_nm: f32, emission: &PerLobe) -> Shares {
-        Shares { elastic: self.reflectance(out_nm), lobes: self.leaving_shares(emission) }
+    fn leaving<S: Simd>(&self, simd: S, out_nm: f32, emission: PerLobe<S>) -> Shares<S> {
+        let absorbed = self.pairs_absorbed(simd, out_nm);
+        Shares {
+            elastic: self.reflectance_through(simd, out_nm, absorbed),
+            lobes: self.leaving_shares(simd, emission),
+        }
     }
 
     #[inline(always)]
-    fn arriving(&self, in_nm: f32) -> (PerLobe, Shares) {
-        let absorbed = self.pairs_absorbed(in_nm);
-        let returned = self.returned_of(in_nm, &absorbed);
-        let elastic = self.reflectance_through(in_nm, &absorbed);
-        (returned, Shares { elastic, lobes: self.arriving_shares(&returned) })
+    fn arriving<S: Simd>(&self, simd: S, in_nm: f32) -> (PerLobe<S>, Shares<S>) {
+        let absorbed = self.pairs_absorbed(simd, in_nm);
+        let returned = self.returned_of(simd, in_nm, absorbed);
+        let elastic = self.reflectance_through(simd, in_nm, absorbed);
+        (returned, Shares { elastic, lobes: self.arriving_shares(simd, returned) })
     }
 
+    /// The lobe that `u` falls on, `Some(None)` for the elastic part; `None` where nothing is
+    /// carried.
     #[inline(always)]
-    fn sample(
+    fn choose<S: Simd>(
         &self,
-        known_nm: f32,
-        shares: Shares,
-        [choice, u]: [f32; 2],
-        draw: impl Fn(Lobe<'t>, f64) -> (f32, f32),
-    ) -> Option<Sample<f32>> {
-        let throughput = shares.total();
+        shares: Shares<S>,
+        throughput: f32,
+        u: f32,
+    ) -> Option<Option<Lobe<'t>>> {
         if throughput <= 0.0 {
             return None;
         }
-        let lobe = shares.choose(choice).and_then(|number| self.lobe(number));
-        Some(match lobe {
-            None => {
-                let probability = shares.elastic / throughput;
-                Sample { nm: known_nm, throughput, draw: Draw::Elastic { probability } }
-            }
-            Some(lobe) => {
-                let (nm, reradiation_per_nm) = draw(lobe, f64::from(u));
-                let per_nm = reradiation_per_nm / throughput;
-                Sample { nm, throughput, draw: Draw::Fluorescent { per_nm } }
-            }
-        })
+        Some(shares.choose(u * throughput).and_then(|number| self.lobe(number)))
     }
 
     /// Lobe `number` mod 2 of corner `number` / 2.
@@ -109,9 +132,11 @@ impl<'t> Blend<'t> {
         let model = &self.table.model;
         let fluorescence = match model {
             Model::Reflectance => Fluorescence::None,
-            Model::Dyes(_) => {
-                Fluorescence::Dyes { first: dye(to_single(last)), weight: first, concentration }
-            }
+            Model::Dyes(_) => Fluorescence::Dyes {
+                first: dye(to_single(last)) as usize,
+                weight: first,
+                concentration,
+            },
             Model::Analytic(_) => Fluorescence::Analytic {
                 emission_peak_nm: first,
                 stokes_shift_nm: first - last,
@@ -122,35 +147,48 @@ impl<'t> Blend<'t> {
     }
 }
 
-/// What is carried at one wavelength by reflection and by each fluorescent lobe.
-#[derive(Clone, Copy, Debug)]
-struct Shares {
-    elastic: f32,
-    /// `[lobe + 2·corner]`.
-    lobes: [f32; 8],
+#[inline(always)]
+fn elastic(nm: f32, share: f32, throughput: f32) -> Sample<f32> {
+    Sample { nm, throughput, draw: Draw::Elastic { probability: share / throughput } }
 }
 
-impl Shares {
+#[inline(always)]
+fn shifted(nm: f32, reradiation_per_nm: f32, throughput: f32) -> Sample<f32> {
+    let per_nm = reradiation_per_nm / throughput;
+    Sample { nm, throughput, draw: Draw::Fluorescent { per_nm } }
+}
+
+/// What is carried at one wavelength by reflection and by each fluorescent lobe.
+#[derive(Clone, Copy, Debug)]
+struct Shares<S: Simd> {
+    elastic: f32,
+    lobes: PerLobe<S>,
+}
+
+impl<S: Simd> Shares<S> {
     #[inline(always)]
     fn total(&self) -> f32 {
-        let [a, b, c, d, e, f, g, h] = self.lobes;
-        self.elastic + sum([a + b, c + d, e + f, g + h])
+        self.elastic + sum(self.lobes[0] + self.lobes[1])
     }
 
-    /// The lobe that `u` in 0..1 falls on; `None` is the elastic part.
+    /// The lobe, as lobe + 2·corner, that `rest` of the total falls on; `None` is the elastic part.
     #[inline(always)]
-    fn choose(&self, u: f32) -> Option<usize> {
-        let mut rest = u * self.total() - self.elastic;
+    fn choose(&self, mut rest: f32) -> Option<usize> {
+        rest -= self.elastic;
         if rest < 0.0 {
             return None;
         }
+        let lobes: [[f32; 4]; 2] = [self.lobes[0].into(), self.lobes[1].into()];
         let mut last = None;
-        for (number, &share) in self.lobes.iter().enumerate() {
-            if share > 0.0 {
-                last = Some(number);
-                rest -= share;
-                if rest < 0.0 {
-                    break;
+        for corner in 0..4 {
+            for lobe in 0..2 {
+                let share = lobes[lobe][corner];
+                if share > 0.0 {
+                    last = Some(2 * corner + lobe);
+                    rest -= share;
+                    if rest < 0.0 {
+                        return last;
+                    }
                 }
             }
         }

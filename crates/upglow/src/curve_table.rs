@@ -1,31 +1,39 @@
 //! Absorption and emission of all dyes, side by side for each wavelength.
 
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f32x4, i32x4};
 use upglow_color::{Grid, Spectrum};
 
-use crate::lookup_table::to_single;
+use crate::blend::transposed;
+use crate::lookup_table::{smaller_of, to_single};
 use crate::{DyeModel, Model};
 
 /// The range of [`Grid::FINE`], whose step is 1 nm.
 const FIRST_NM: f32 = 300.0;
 const LAST_NM: f32 = 830.0;
 const BINS: usize = Grid::FINE.len() - 1;
+/// The number before [`BINS`]: the last wavelength is in the last bin. What it misses is 3e-5 of
+/// a step, 1e-6 at most.
+const LAST_PLACE: f32 = f32::next_down(BINS as f32);
 
 /// The curves of a ring of dyes on [`Grid::FINE`] in single precision; empty where there are none.
 ///
 /// One wavelength touches one or two cache lines for each kind of curve, whatever the dyes.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct CurveTable {
-    /// Samples of a dye and of its neighbor in the ring, and their steps to the next wavelength,
-    /// `[wavelength][dye]`: one vector load for each pair of dyes. The last wavelength's row is
-    /// zero, for everything outside the grid.
-    absorption: Vec<Pair>,
-    emission: Vec<Pair>,
+    pub(crate) absorption: Curves,
+    pub(crate) emission: Curves,
     /// `[dye]`, the first again after the last.
     dyes: Vec<DyeNumbers>,
-    columns: usize,
+    /// Numbers of a wavelength.
+    stride: u32,
 }
 
-type Pair = [f32; 4];
+/// Samples and their steps to the next wavelength, `[wavelength][dye][sample, step]`, with the
+/// first dye again after the last: a pair of neighbors is four numbers in a row. The last
+/// wavelength's are zero, for everything outside the grid.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Curves(Vec<f32>);
 
 /// What the fast path needs of one dye besides its curves.
 #[derive(Clone, Copy, Debug, Default)]
@@ -38,33 +46,39 @@ pub(crate) struct DyeNumbers {
     pub(crate) emitted: f32,
 }
 
-/// A place in a [`CurveTable`].
+/// Where the curves of a wavelength are in a [`CurveTable`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Row {
-    start: usize,
+    start: u32,
     fraction: f32,
+}
+
+/// Where the curves of four wavelengths are in a [`CurveTable`].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rows<S: Simd> {
+    start: [u32; 4],
+    fraction: f32x4<S>,
 }
 
 impl CurveTable {
     pub(crate) fn new(model: &Model) -> Self {
         let Model::Dyes(model) = model else { return Self::default() };
         let curves = model.curves();
-        let columns = curves.len();
+        let ring = curves.len() + 1;
         let rows = |of: fn(&crate::DyeCurves) -> &Spectrum| {
             let rows = (0..BINS).flat_map(|i| {
-                (0..columns).map(move |dye| {
-                    let values = [dye, model.partner(dye)].map(|dye| of(&curves[dye]).values());
-                    let [first, second] = values.map(|v| [v[i], v[i + 1] - v[i]]);
-                    [first[0], second[0], first[1], second[1]].map(to_single)
+                (0..ring).flat_map(move |dye| {
+                    let values = of(&curves[dye % curves.len()]).values();
+                    [values[i], values[i + 1] - values[i]].map(to_single)
                 })
             });
-            rows.chain(std::iter::repeat_n([0.0; 4], columns)).collect()
+            Curves(rows.chain(std::iter::repeat_n(0.0, 2 * ring)).collect())
         };
         Self {
             absorption: rows(|dye| &dye.absorption),
             emission: rows(|dye| &dye.emission),
-            dyes: (0..=columns).map(|dye| DyeNumbers::new(model, &curves[dye % columns])).collect(),
-            columns,
+            dyes: (0..ring).map(|i| DyeNumbers::new(model, &curves[i % curves.len()])).collect(),
+            stride: u32::try_from(2 * ring).expect("a set has far fewer than 2³¹ dyes"),
         }
     }
 
@@ -72,36 +86,68 @@ impl CurveTable {
     #[inline(always)]
     pub(crate) fn row(&self, nm: f32) -> Row {
         let inside = (FIRST_NM..=LAST_NM).contains(&nm);
-        let position = if inside { nm - FIRST_NM } else { 0.0 };
-        let below = whole(position).min(BINS - 1);
-        let bin = if inside { below } else { BINS };
-        Row { start: bin * self.columns, fraction: position - below as f32 }
+        let place = if inside { smaller_of(nm - FIRST_NM, LAST_PLACE) } else { BINS as f32 };
+        let below = whole(place);
+        Row { start: below * self.stride, fraction: place - below as f32 }
     }
 
-    /// Absorptance of dye number `dye` and of its neighbor at concentration 1.
+    /// Where the curves of four wavelengths are.
     #[inline(always)]
-    pub(crate) fn absorption(&self, row: Row, dye: usize) -> [f32; 2] {
-        row.read(&self.absorption, dye)
-    }
-
-    /// Emission of dye number `dye` and of its neighbor, 1/nm.
-    #[inline(always)]
-    pub(crate) fn emission(&self, row: Row, dye: usize) -> [f32; 2] {
-        row.read(&self.emission, dye)
+    pub(crate) fn rows<S: Simd>(&self, simd: S, nm: f32x4<S>) -> Rows<S> {
+        let inside = nm.simd_ge(FIRST_NM) & nm.simd_le(LAST_NM);
+        let place = (nm - FIRST_NM).min(LAST_PLACE);
+        let place = inside.select(place, f32x4::splat(simd, BINS as f32));
+        let below: i32x4<S> = place.to_int();
+        let fraction = place - below.to_float::<f32x4<S>>();
+        let below: [i32; 4] = below.into();
+        let mut start = [0; 4];
+        for k in 0..4 {
+            start[k] = below[k].cast_unsigned() * self.stride;
+        }
+        Rows { start, fraction }
     }
 
     /// Dye number `dye` and its neighbor.
     #[inline(always)]
-    pub(crate) fn pair(&self, dye: usize) -> [&DyeNumbers; 2] {
-        [&self.dyes[dye], &self.dyes[dye + 1]]
+    pub(crate) fn pair(&self, dye: u32) -> [&DyeNumbers; 2] {
+        let dye = dye as usize;
+        let pair = &self.dyes[dye..dye + 2];
+        [&pair[0], &pair[1]]
     }
 }
 
 impl Row {
+    /// As the place of four curves at one wavelength.
     #[inline(always)]
-    fn read(self, curves: &[Pair], dye: usize) -> [f32; 2] {
-        let [first, second, rise, second_rise] = curves[self.start + dye];
-        [first + self.fraction * rise, second + self.fraction * second_rise]
+    pub(crate) fn four_times<S: Simd>(self, simd: S) -> Rows<S> {
+        Rows { start: [self.start; 4], fraction: f32x4::splat(simd, self.fraction) }
+    }
+}
+
+impl Curves {
+    /// Samples and steps of a dye and of its neighbor. By way of `u32`, whose sums need no check.
+    #[inline(always)]
+    fn four(&self, start: u32, dye: u32) -> &[f32] {
+        let place = (start + 2 * dye) as usize;
+        &self.0[place..place + 4]
+    }
+
+    /// The curves of a dye and of its neighbor.
+    #[inline(always)]
+    pub(crate) fn pair(&self, row: Row, dye: u32) -> [f32; 2] {
+        let numbers = self.four(row.start, dye);
+        [numbers[0] + row.fraction * numbers[1], numbers[2] + row.fraction * numbers[3]]
+    }
+
+    /// The curves of four dyes and of their neighbors, each at a wavelength of its own.
+    #[inline(always)]
+    pub(crate) fn pairs<S: Simd>(&self, simd: S, rows: Rows<S>, dyes: [u32; 4]) -> [f32x4<S>; 2] {
+        let mut four = [rows.fraction; 4];
+        for k in 0..4 {
+            four[k] = f32x4::from_slice(simd, self.four(rows.start[k], dyes[k]));
+        }
+        let [sample, step, next_sample, next_step] = transposed(four);
+        [rows.fraction.mul_add(step, sample), rows.fraction.mul_add(next_step, next_sample)]
     }
 }
 
@@ -118,13 +164,13 @@ impl DyeNumbers {
     }
 }
 
-/// The whole part of a position in a table.
+/// The whole part of a place in a table.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "the position is at least 0 and its fraction is meant to go"
+    reason = "the place is at least 0 and its fraction is meant to go"
 )]
 #[inline(always)]
-fn whole(position: f32) -> usize {
-    position as i32 as usize
+fn whole(place: f32) -> u32 {
+    place as i32 as u32
 }

@@ -45,6 +45,7 @@ mod edge;
 mod features;
 mod header;
 mod interpolation;
+mod inverse_root;
 mod lookup_table;
 mod material;
 mod mixture;

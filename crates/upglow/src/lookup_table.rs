@@ -3,7 +3,8 @@
 use crate::blend::{Bells, Blend};
 use crate::curve_table::CurveTable;
 use crate::material::Lobe;
-use crate::{Cube, LookupError, Mixing, Model};
+use crate::{Cube, Edge, LookupError, Mixing, Model};
+use fearless_simd::Level;
 
 /// A [`Cube`] in single precision, packed so that a look-up touches as few cache lines as it can.
 ///
@@ -30,6 +31,8 @@ pub struct LookupTable {
     pub(crate) curves: CurveTable,
     pub(crate) absorption_bells: Bells,
     pub(crate) emission_bells: Bells,
+    /// The vectors that several wavelengths at once are worked on with.
+    pub(crate) level: Level,
     resolution: u32,
     nodes: Vec<PackedNode>,
 }
@@ -45,9 +48,15 @@ pub(crate) struct PackedNode {
     pub(crate) fluorescence: [f32; 4],
 }
 
-/// Coefficients of a parabola are kept below this: larger ones overflow within 1000 nm of the
-/// edge, smaller ones bend the steepest reflectances that single precision can tell apart.
-const GREATEST_COEFFICIENT: f64 = 1e30;
+/// Edges farther than this from all light, nm, are restated around [`CENTER_NM`]: distances from
+/// them would have no digits left.
+const FARTHEST_EDGE_NM: f64 = 1e5;
+const CENTER_NM: f64 = 550.0;
+
+/// Greatest coefficients of 1, d and d². Larger ones overflow when the parabola is squared at the
+/// greatest distances; smaller ones bend reflectances that rise within one step of a wavelength in
+/// single precision, 6e-5 nm.
+const GREATEST_COEFFICIENTS: [f64; 3] = [1e18, 1e12, 1e8];
 
 impl Cube {
     /// The cube compiled for looking up millions of colors.
@@ -58,6 +67,7 @@ impl Cube {
             emission_bells,
             model: self.model().clone(),
             curves: CurveTable::new(self.model()),
+            level: Level::new(),
             resolution: axis(self),
             nodes: (0..self.nodes().len()).map(|index| PackedNode::new(self, index)).collect(),
         }
@@ -72,9 +82,7 @@ pub(crate) fn axis(cube: &Cube) -> u32 {
 impl PackedNode {
     fn new(cube: &Cube, index: usize) -> Self {
         let node = &cube.nodes()[index];
-        let [constant, linear, quadratic] =
-            node.edge().parabola().map(|c| c.clamp(-GREATEST_COEFFICIENT, GREATEST_COEFFICIENT));
-        let parabola = [node.edge().edge_nm, constant, linear, quadratic];
+        let parabola = bounded_parabola(node.edge());
         let fluorescence = cube.node_material(index).fluorescence;
         let returned_nm =
             fluorescence.lobes(cube.model()).map(|lobe: Lobe<'_>| lobe.returned_total_nm()).sum();
@@ -90,6 +98,21 @@ impl PackedNode {
         };
         Self { parabola: parabola.map(to_single), fluorescence: fluorescence.map(to_single) }
     }
+}
+
+/// The edge's wavelength and the coefficients around it, within bounds and never not a number.
+fn bounded_parabola(edge: Edge) -> [f64; 4] {
+    let ([mut constant, mut linear, quadratic], mut edge_nm) = (edge.parabola(), edge.edge_nm);
+    if edge_nm.abs() > FARTHEST_EDGE_NM {
+        let d = CENTER_NM - edge_nm;
+        constant += d * (linear + d * quadratic);
+        linear += 2.0 * d * quadratic;
+        edge_nm = CENTER_NM;
+    }
+    let [c, l, q] = GREATEST_COEFFICIENTS;
+    // `max` takes the number where the other is none.
+    let within = |value: f64, limit: f64| value.max(-limit).min(limit);
+    [edge_nm, within(constant, c), within(linear, l), within(quadratic, q)]
 }
 
 impl LookupTable {
@@ -298,6 +321,53 @@ mod tests {
     }
 
     #[test]
+    fn the_widest_vectors_answer_what_the_plain_ones_answer() {
+        // Wide ones round a product and a sum once, plain ones twice: a few units in the last
+        // place of numbers near 10 under the root.
+        const FUSED: f32 = 4e-6;
+        for (seed, model) in (0..).zip(models()) {
+            let mut random = Random::new(seed);
+            let nodes = (0..27).map(|_| random.node(&model)).collect();
+            let cube =
+                Cube::new(Contract::default(), model, FitRecord::default(), 3, nodes).unwrap();
+            let (wide, mut plain) = (cube.lookup_table(), cube.lookup_table());
+            plain.level = Level::baseline();
+            for _ in 0..2000 {
+                let rgb = [(); 3].map(|()| to_single(random.unit()));
+                let nm = [(); 8].map(|()| to_single(random.between(290.0, 840.0)));
+                let [wide, plain] = [&wide, &plain].map(|table| {
+                    let blend = table.blend(rgb).unwrap();
+                    let [a, b, c, d] = blend.reflectance4([nm[0], nm[2], nm[4], nm[6]]);
+                    let [e, f, g, h, i, j, k, l] = blend.reflectance8(nm);
+                    [a, b, c, d, e, f, g, h, i, j, k, l]
+                });
+                for (wide, plain) in wide.into_iter().zip(plain) {
+                    assert!((wide - plain).abs() < FUSED, "{wide} {plain}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn edges_far_from_all_light_are_restated_near_it() {
+        // Single precision of numbers near 10 under the root.
+        const SINGLE: f64 = 1e-5;
+        for edge_nm in [-3e5_f32, 1.5e5, 2e6] {
+            let edge = Edge { edge_nm: edge_nm.into(), level: 1.0, slope_per_nm: 1e-6 };
+            let node = crate::Node::new(edge, crate::Fluorescence::None, 0.0);
+            let model = Model::Reflectance;
+            let cube =
+                Cube::new(Contract::default(), model, FitRecord::default(), 2, vec![node; 8]);
+            let table = cube.unwrap().lookup_table();
+            let blend = table.blend([0.5; 3]).unwrap();
+            for nm in [300.0, 550.0, 830.0_f32] {
+                let error = f64::from(blend.reflectance(nm)) - node.edge().at(nm.into());
+                assert!(error.abs() < SINGLE, "{edge_nm} {nm} {error}");
+            }
+        }
+    }
+
+    #[test]
     fn reflectances_are_fractions_for_the_strangest_nodes_and_wavelengths() {
         let strange = [0.0, 1e-30, 1e30, -1e30, f32::MAX, f32::MIN, 550.0, 0.01];
         let mut random = Random::new(3);
@@ -312,7 +382,9 @@ mod tests {
         for _ in 0..1000 {
             let rgb = [(); 3].map(|()| to_single(random.unit()));
             let blend = table.blend(rgb).unwrap();
-            for r in blend.reflectance4([300.0, 450.0, 550.0, 830.0]) {
+            let eight =
+                blend.reflectance8([-1e30, 0.0, 300.0, 450.0, 550.0, 830.0, 1e30, f32::NAN]);
+            for r in blend.reflectance4([300.0, 450.0, 550.0, 830.0]).into_iter().chain(eight) {
                 // Rounding only, of a sum of weights.
                 assert!((0.0..=1.0 + 1e-6).contains(&r), "{r} {blend:?}");
             }
