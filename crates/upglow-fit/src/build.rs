@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
-use upglow::{Cube, CubeError, FitRecord, Model, Node};
+use upglow::{CoefficientTableError, Cube, CubeError, FitRecord, Model, Node};
 use upglow_color::{Contract, LinearRgb, Metric};
 
 use crate::fitter::EXACT;
@@ -12,7 +12,7 @@ use crate::lattice::Lattice;
 use crate::{Fit, FitOptions, FitOptionsError, Fitter, Progress, Watch};
 
 /// Why no cube was built.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BuildError {
     /// An option is out of range.
@@ -21,6 +21,9 @@ pub enum BuildError {
     /// The resolution is out of range.
     #[error(transparent)]
     Cube(#[from] CubeError),
+    /// The resolution of a table is out of range.
+    #[error(transparent)]
+    Table(#[from] CoefficientTableError),
     /// The watcher stopped the work.
     #[error("stopped")]
     Stopped,
@@ -95,7 +98,7 @@ fn fit_by_levels(
 const BATCH: usize = 64;
 
 /// The work of one stage: done in parallel, told to a watcher, given up when it says so.
-struct Tally<'w> {
+pub(crate) struct Tally<'w> {
     stage: &'static str,
     done: AtomicUsize,
     total: usize,
@@ -103,12 +106,12 @@ struct Tally<'w> {
 }
 
 impl<'w> Tally<'w> {
-    fn new(stage: &'static str, total: usize, watch: &'w dyn Watch) -> Self {
+    pub(crate) fn new(stage: &'static str, total: usize, watch: &'w dyn Watch) -> Self {
         Self { stage, done: AtomicUsize::new(0), total, watch }
     }
 
     /// `work` for each of `count` numbers, in their order.
-    fn each<T: Send + Copy>(
+    pub(crate) fn each<T: Send + Clone>(
         &self,
         count: usize,
         work: impl Fn(usize) -> T + Sync,

@@ -23,6 +23,7 @@
 //! Out of scope: what a renderer needs at run time (crate `upglow`), files' names, printing.
 
 mod build;
+mod coefficients;
 mod fitter;
 mod job;
 mod lattice;
@@ -41,10 +42,11 @@ mod sums;
 mod verify;
 
 pub use build::{BuildError, build_cube};
+pub use coefficients::{fit_coefficients, round_trip};
 pub use fitter::{ColorError, Fit, Fitter};
 pub use options::{FitOptions, FitOptionsError, Method, Parameters, UnknownMethod};
 pub use progress::{Progress, Unwatched, Watch};
 pub use solver::{Jacobian, Residuals, SolverOptions, Stop, Summary, jacobian_error, solve};
 pub use standing::Standing;
-pub use summary::CubeSummary;
+pub use summary::{CubeSummary, Spread};
 pub use verify::{Check, Offender, Place, Stopped, Verdict, VerifyOptions, VerifyReport, verify};

@@ -128,11 +128,20 @@ pub(crate) struct PassiveProblem<'a> {
     pub(crate) shape: Shape,
 }
 
-impl Residuals<3, 3> for PassiveProblem<'_> {
-    fn eval(&self, x: &[f64; 3]) -> ([f64; 3], Jacobian<3, 3>) {
+impl PassiveProblem<'_> {
+    /// Residuals and derivatives where the light is `exposure` times the contract's.
+    pub(crate) fn eval_lit(&self, x: &[f64; 3], exposure: f64) -> ([f64; 3], Jacobian<3, 3>) {
         let (parabola, jacobian) = self.shape.chart(*x);
         let reflected = self.sums.reflect(parabola, &CLEAR, []);
-        residuals_of(&self.goal, reflected.color, by_shape(&reflected, jacobian))
+        let lit = |color: [f64; 3]| color.map(|v| v * exposure);
+        let derivatives = by_shape(&reflected, jacobian).map(lit);
+        residuals_of(&self.goal, lit(reflected.color), derivatives)
+    }
+}
+
+impl Residuals<3, 3> for PassiveProblem<'_> {
+    fn eval(&self, x: &[f64; 3]) -> ([f64; 3], Jacobian<3, 3>) {
+        self.eval_lit(x, 1.0)
     }
 
     fn bounds(&self) -> [[f64; 2]; 3] {

@@ -50,11 +50,13 @@ impl CubeSummary {
 
 /// Mean, 95th percentile and greatest of some numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Spread {
-    pub(crate) mean: f64,
+pub struct Spread {
+    /// The mean.
+    pub mean: f64,
     /// By nearest rank: the smallest number that at least 95 in 100 do not exceed.
-    pub(crate) p95: f64,
-    pub(crate) max: f64,
+    pub p95: f64,
+    /// The greatest.
+    pub max: f64,
 }
 
 impl Spread {

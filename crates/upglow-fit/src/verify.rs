@@ -13,6 +13,7 @@ use rayon::prelude::*;
 use upglow::{Cube, DyeCurves, Interpolation, Model};
 
 pub use report::{Check, Offender, Place, Stopped, Verdict, VerifyReport};
+pub(crate) use subjects::random_rgb;
 
 use crate::summary::Spread;
 use crate::{Progress, Watch};

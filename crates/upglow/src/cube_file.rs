@@ -173,14 +173,19 @@ impl Cube {
     /// [`WriteCubeError`] if the container refuses, which it does for no valid cube.
     pub fn to_bytes(&self) -> Result<Vec<u8>, WriteCubeError> {
         let mut tensors = self.tensors();
-        let names = tensors.iter().map(|t| t.name.to_owned()).collect();
-        let header = serde_json::to_string(&Header::of(self, names)).expect("plain data");
+        let header = self.header_json();
         let content = tensors.iter().map(|t| (t.name, t.dtype, &t.shape[..], &t.bytes[..]));
         let checksum = checksum(&header, content);
         tensors.push(Tensor::of_bytes(CHECKSUM, vec![checksum.len()], checksum));
         let metadata = HashMap::from([(ENTRY.to_owned(), header)]);
         let views = tensors.iter().map(|t| (t.name, t));
         Ok(safetensors::serialize(views, Some(metadata))?)
+    }
+
+    /// What the cube's file says of itself, as JSON: contract, model, fit, without the curves.
+    pub fn header_json(&self) -> String {
+        let names = self.tensors().iter().map(|t| t.name.to_owned()).collect();
+        serde_json::to_string(&Header::of(self, names)).expect("plain data")
     }
 
     /// Writes the cube's file. It appears whole or, on any failure, not at all.

@@ -36,6 +36,7 @@ mod batch;
 mod blend;
 mod blend_sampling;
 mod bspline;
+mod coefficient_table;
 mod cube;
 mod cube_file;
 mod curve_table;
@@ -58,6 +59,7 @@ mod sigmoid;
 
 pub use batch::{ColorTable, LengthError};
 pub use blend::Blend;
+pub use coefficient_table::{CoefficientTable, CoefficientTableError, Integrator};
 pub use cube::{Cube, CubeError, FitRecord, LookupError, Node};
 pub use cube_file::{ReadCubeError, WriteCubeError, write_whole};
 pub use dye::{DyeSet, DyeSetError};

@@ -69,21 +69,19 @@ impl<'m> Mixture<'m> {
     /// [`Mixture::albedo`] where the grid holds the whole emission.
     pub fn reradiation_matrix(&self, grid: Grid) -> Vec<Vec<f64>> {
         let half = f64::from(grid.step_nm()) / 2.0;
-        grid.wavelengths_nm()
-            .map(|out_nm| {
-                let row = grid.wavelengths_nm().map(|in_nm| {
-                    let moved: f64 = self
-                        .lobes()
-                        .map(|(w, lobe)| {
-                            w * lobe.returned(in_nm)
-                                * lobe.emission_between(out_nm - half, out_nm + half)
-                        })
-                        .sum();
-                    if in_nm == out_nm { moved + self.reflectance(in_nm) } else { moved }
-                });
-                row.collect()
-            })
-            .collect()
+        let mut matrix = vec![vec![0.0; grid.len()]; grid.len()];
+        for (w, lobe) in self.lobes() {
+            let returned: Vec<f64> =
+                grid.wavelengths_nm().map(|nm| w * lobe.returned(nm)).collect();
+            for (row, out_nm) in matrix.iter_mut().zip(grid.wavelengths_nm()) {
+                let emitted = lobe.emission_between(out_nm - half, out_nm + half);
+                row.iter_mut().zip(&returned).for_each(|(moved, back)| *moved += back * emitted);
+            }
+        }
+        for (i, nm) in grid.wavelengths_nm().enumerate() {
+            matrix[i][i] += self.reflectance(nm);
+        }
+        matrix
     }
 
     /// The color of the mixture under the light of `sums`, which must be of the same model.

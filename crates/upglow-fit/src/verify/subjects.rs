@@ -61,7 +61,7 @@ impl Subjects {
 }
 
 /// Random color number `index` of a seed, each component in 0..1.
-fn random_rgb(seed: u64, index: usize) -> LinearRgb {
+pub(crate) fn random_rgb(seed: u64, index: usize) -> LinearRgb {
     let first = (index as u64).wrapping_mul(3);
     LinearRgb([1, 2, 3].map(|k| unit(split_mix(seed, first.wrapping_add(k)))))
 }

@@ -1,0 +1,241 @@
+//! Fits tables of sigmoid coefficients for programs that read nothing else.
+
+use upglow::{CoefficientTable, Integrator, Model, Sigmoid};
+use upglow_color::{Contract, Goal, Grid, LinearRgb, Metric, Xyz};
+
+use crate::build::Tally;
+use crate::job::Job;
+use crate::parabola::sigmoid_of;
+use crate::problem::{PassiveProblem, Shape};
+use crate::solver::{Jacobian, Residuals, solve};
+use crate::summary::Spread;
+use crate::verify::random_rgb;
+use crate::{BuildError, FitOptions, Fitter, SolverOptions, Watch};
+
+/// Fits the reflectance of every node of a [`CoefficientTable`], on all threads of the current rayon
+/// pool.
+///
+/// Each column of nodes of one hue is followed from the middle of the brightness to both ends, so
+/// that neighbors have like coefficients: readers interpolate them. Where no reflectance within the
+/// slope limit has the color, the node has the nearest one that is found from there.
+///
+/// # Errors
+///
+/// [`BuildError`] if an option or the resolution is out of range, or `watch` stopped the work.
+pub fn fit_coefficients(
+    contract: &Contract,
+    slope_max_per_nm: Option<f64>,
+    resolution: usize,
+    watch: &dyn Watch,
+) -> Result<CoefficientTable, BuildError> {
+    let options = FitOptions { slope_max_per_nm, ..FitOptions::default() };
+    let fitter = Fitter::new(contract, &Model::Reflectance, options)?;
+    let blank = vec![[0.0; 3]; 3 * resolution.pow(3)];
+    let levels = CoefficientTable::levels(resolution);
+    let blank = CoefficientTable::new(levels.clone(), blank, None)?;
+    let count = 3 * resolution * resolution;
+    let columns = Tally::new("fitting", count, watch)
+        .each(count, |column| Column { fitter: &fitter, table: &blank, column }.follow())?;
+    let mut nodes = Vec::with_capacity(blank.nodes().len());
+    for of_channel in columns.chunks(resolution * resolution) {
+        for level in 0..resolution {
+            nodes.extend(of_channel.iter().map(|column| column[level]));
+        }
+    }
+    Ok(CoefficientTable::new(levels, nodes, Some(Integrator::of(contract)))?)
+}
+
+/// CIEDE2000 of what a reader finds in `table` for `points` random colors of the contract's RGB
+/// space, under its light, by sums over 5 nm. The same `seed` draws the same colors.
+pub fn round_trip(
+    table: &CoefficientTable,
+    contract: &Contract,
+    points: usize,
+    seed: u64,
+) -> Spread {
+    let colorimetry = contract.on(Grid::FIT);
+    let miss = |point: usize| {
+        let rgb = LinearRgb(random_rgb(seed, point).0.map(|v| f64::from(single(v))));
+        let found = table.sigmoid(rgb.0.map(single));
+        let shown = colorimetry.grid().wavelengths_nm().map(|nm| found.at(nm));
+        let shown = colorimetry.xyz_from_reflectance(shown);
+        Metric::De2000.distance(&colorimetry, colorimetry.xyz_from_rgb(rgb), shown)
+    };
+    Spread::of((0..points).map(miss).collect())
+}
+
+/// All nodes of one hue and saturation, from dark to bright.
+#[derive(Clone, Copy, Debug)]
+struct Column<'a> {
+    fitter: &'a Fitter,
+    table: &'a CoefficientTable,
+    /// `[largest][next but one][next]`.
+    column: usize,
+}
+
+/// Darker colors are judged as if lit until their greatest channel is this: the eye that CIEDE2000
+/// describes sees no hue in the dark, but a renderer's lamp may be bright. Larger makes fits of
+/// middle tones strict, smaller lets dark hues go.
+const LEAST_SEEN: f64 = 0.1;
+
+/// What published tables hold for black and white: flat reflectances of 4e-9 and 1 − 4e-9.
+const GREATEST_FLAT: f64 = 8192.0;
+
+impl Column<'_> {
+    fn follow(&self) -> Vec<[f32; 3]> {
+        let levels = self.table.brightness();
+        let middle = levels.partition_point(|level| *level < 0.5).min(levels.len() - 2);
+        let first = self.start(middle);
+        let mut found = vec![first; levels.len()];
+        for level in (0..middle).rev() {
+            found[level] = self.from(level, found[level + 1]);
+        }
+        for level in middle + 1..levels.len() {
+            found[level] = self.from(level, found[level - 1]);
+        }
+        let numbers = found.iter().enumerate().map(|(level, near)| self.stored(level, *near));
+        numbers.map(|s| [s.c0, s.c1, s.c2].map(single)).collect()
+    }
+
+    /// Coefficients of 1, t, t² that the general search finds.
+    fn start(&self, level: usize) -> [f64; 3] {
+        let rgb = self.table.node_rgb(self.place(level));
+        let fit = self.fitter.fit(rgb).expect("nodes are in 0..=1");
+        Shape::Free.numbers(fit.reflectance)
+    }
+
+    /// Coefficients that show the color of a level, near those of its neighbor.
+    fn from(&self, level: usize, near: [f64; 3]) -> [f64; 3] {
+        let problem = self.problem(level);
+        let free = solve(&problem.in_shape(Shape::Free), near, &SolverOptions::default()).x;
+        let limit_per_nm = self.fitter.slope_limit_per_nm;
+        if Shape::Free.edge(free).slope_per_nm.abs() <= limit_per_nm {
+            return free;
+        }
+        let shape = Shape::Edge { slope_limit_per_nm: limit_per_nm };
+        let start = shape.numbers(Shape::Free.edge(near));
+        let edge = solve(&problem.in_shape(shape), start, &SolverOptions::default()).x;
+        Shape::Free.numbers(shape.edge(edge))
+    }
+
+    /// A gray is flat whatever its neighbors are.
+    fn stored(&self, level: usize, found: [f64; 3]) -> Sigmoid {
+        let job = Job { fitter: self.fitter, goal: self.goal(level) };
+        let flat =
+            |x: f64| Sigmoid { c0: 0.0, c1: 0.0, c2: x.clamp(-GREATEST_FLAT, GREATEST_FLAT) };
+        match job.gray() {
+            Some(gray) => flat(gray.reflectance.level),
+            None => sigmoid_of(found),
+        }
+    }
+
+    fn place(&self, level: usize) -> [usize; 4] {
+        let (n, column) = (self.table.resolution(), self.column);
+        [column / (n * n), level, column / n % n, column % n]
+    }
+
+    fn goal(&self, level: usize) -> Goal {
+        let colorimetry = self.fitter.model().colorimetry();
+        let color = colorimetry.xyz_from_rgb(self.table.node_rgb(self.place(level)));
+        Metric::De2000.goal(colorimetry, color)
+    }
+
+    fn problem(&self, level: usize) -> LitProblem<'_> {
+        let value = f64::from(self.table.brightness()[level]);
+        // Black, at any exposure, is black.
+        let exposure = if value > 0.0 { (LEAST_SEEN / value).max(1.0) } else { 1.0 };
+        let colorimetry = self.fitter.model().colorimetry();
+        let lit = Xyz(self.goal(level).xyz().0.map(|v| v * exposure));
+        let goal = Metric::De2000.goal(colorimetry, lit);
+        let passive = PassiveProblem { sums: &self.fitter.sums, goal, shape: Shape::Free };
+        LitProblem { passive, exposure }
+    }
+}
+
+/// A reflectance under a brighter light than the contract's.
+#[derive(Clone, Copy, Debug)]
+struct LitProblem<'a> {
+    passive: PassiveProblem<'a>,
+    exposure: f64,
+}
+
+impl LitProblem<'_> {
+    fn in_shape(&self, shape: Shape) -> Self {
+        Self { passive: PassiveProblem { shape, ..self.passive }, ..*self }
+    }
+}
+
+impl Residuals<3, 3> for LitProblem<'_> {
+    fn eval(&self, x: &[f64; 3]) -> ([f64; 3], Jacobian<3, 3>) {
+        self.passive.eval_lit(x, self.exposure)
+    }
+
+    fn bounds(&self) -> [[f64; 2]; 3] {
+        self.passive.bounds()
+    }
+}
+
+/// The nearest number in single precision.
+#[expect(clippy::cast_possible_truncation, reason = "rounding is what it is for")]
+fn single(value: f64) -> f32 {
+    value as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Unwatched;
+    use upglow_color::RgbSpace;
+
+    fn srgb() -> Contract {
+        Contract { space: RgbSpace::named("srgb").unwrap(), ..Contract::default() }
+    }
+
+    #[test]
+    fn every_node_of_srgb_is_reached() {
+        // Fits end within 1e-4; coefficients in nm lose 5e-4 of the argument in single precision.
+        const SINGLE: f64 = 0.02;
+        let table = fit_coefficients(&srgb(), None, 8, &Unwatched).unwrap();
+        let n = table.resolution();
+        let colorimetry = srgb().on(Grid::FIT);
+        for (index, [c0, c1, c2]) in table.nodes().iter().map(|c| c.map(f64::from)).enumerate() {
+            let place = [index / n.pow(3), index / (n * n) % n, index / n % n, index % n];
+            let target = colorimetry.xyz_from_rgb(table.node_rgb(place));
+            let found = Sigmoid { c0, c1, c2 };
+            let shown = colorimetry.grid().wavelengths_nm().map(|nm| found.at(nm));
+            let shown = colorimetry.xyz_from_reflectance(shown);
+            let miss = Metric::De2000.distance(&colorimetry, target, shown);
+            assert!(miss < SINGLE, "{place:?} {miss}");
+        }
+    }
+
+    #[test]
+    fn a_reader_finds_colors_that_nobody_could_tell_apart() {
+        let table = fit_coefficients(&srgb(), None, 16, &Unwatched).unwrap();
+        let found = round_trip(&table, &srgb(), 1000, 0);
+        assert!(found.mean < 0.2 && found.max < 3.0, "{found:?}");
+        assert_eq!(found, round_trip(&table, &srgb(), 1000, 0));
+    }
+
+    #[test]
+    fn grays_are_flat_and_white_is_white() {
+        let table = fit_coefficients(&srgb(), Some(0.01), 8, &Unwatched).unwrap();
+        for gray in [0.0, 0.2, 0.7, 1.0] {
+            let found = table.sigmoid([gray; 3]);
+            assert_eq!((found.c0, found.c1), (0.0, 0.0));
+        }
+        // A flat argument of 8192 is 4e-9 from white.
+        assert!((table.sigmoid([1.0; 3]).at(550.0) - 1.0).abs() < 1e-8);
+    }
+
+    #[test]
+    fn no_node_is_steeper_than_the_limit() {
+        // Rounding of three coefficients to single precision, at arguments up to ten.
+        const SINGLE: f64 = 1e-4;
+        let table = fit_coefficients(&Contract::default(), Some(0.01), 6, &Unwatched).unwrap();
+        for [c0, c1, c2] in table.nodes().iter().map(|c| c.map(f64::from)) {
+            let steepest = Sigmoid { c0, c1, c2 }.steepest_slope_per_nm();
+            assert!(steepest < 0.01 + SINGLE, "{steepest}");
+        }
+    }
+}
