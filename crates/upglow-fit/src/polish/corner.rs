@@ -1,0 +1,67 @@
+//! What polishing needs of a cube's nodes.
+
+use upglow::{Cube, Edge, Fluorescence, ModelOnGrid};
+
+use crate::parabola::{edge_of, scaled};
+use crate::polish::in_units;
+use crate::polish::shine::{CHART_NM, to_single};
+
+/// What polishing needs of a node, one cache line.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(super) struct Corner {
+    /// The reflectance at the chart wavelengths.
+    pub(super) values: [f32; 3],
+    /// Edge (t), level, slope (1/nm).
+    pub(super) edge: [f32; 3],
+    /// Dyes: the place in the ring, first + weight. Bells: emission peak, Stokes shift, 100 nm.
+    pub(super) hue: [f32; 2],
+    pub(super) concentration: f32,
+    pub(super) xyz: [f32; 3],
+    pub(super) de2000: f32,
+}
+
+/// The four corners of a texel's tetrahedron, with their weights.
+pub(super) type Corners<'a> = [(f64, &'a Corner); 4];
+
+impl Corner {
+    pub(super) fn new(cube: &Cube, index: usize, model: &ModelOnGrid) -> Self {
+        let node = &cube.nodes()[index];
+        let material = cube.node_material(index);
+        let edge = node.edge();
+        let (hue, concentration) = match material.fluorescence {
+            Fluorescence::None => ([0.0; 2], 0.0),
+            Fluorescence::Dyes { first, weight, concentration } => {
+                ([first as f64 + weight, 0.0], concentration)
+            }
+            Fluorescence::Analytic { emission_peak_nm, stokes_shift_nm, concentration } => {
+                ([emission_peak_nm, stokes_shift_nm].map(in_units), concentration)
+            }
+        };
+        Self {
+            values: CHART_NM.map(|nm| to_single(edge.at(nm))),
+            edge: [scaled(edge.edge_nm), edge.level, edge.slope_per_nm].map(to_single),
+            hue: hue.map(to_single),
+            concentration: to_single(concentration),
+            xyz: model.color(material).0.map(to_single),
+            de2000: node.de2000,
+        }
+    }
+
+    pub(super) fn edge(&self) -> Edge {
+        let [e, level, slope_per_nm] = self.edge.map(f64::from);
+        edge_of([e, level, slope_per_nm], 1.0)
+    }
+}
+
+/// Whether all corners that take part have a property.
+#[inline(always)]
+pub(super) fn all(corners: &Corners<'_>, holds: impl Fn(&Corner) -> bool) -> bool {
+    corners.iter().all(|(weight, corner)| *weight == 0.0 || holds(corner))
+}
+
+/// The mean of one number of the corners.
+#[inline(always)]
+pub(super) fn mean(corners: &Corners<'_>, of: impl Fn(&Corner) -> f32) -> f64 {
+    corners.iter().map(|(weight, corner)| weight * f64::from(of(corner))).sum()
+}

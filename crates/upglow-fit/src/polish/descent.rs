@@ -1,0 +1,255 @@
+//! Steps from a start to a color, within bounds, changing as little as possible.
+
+/// Unknowns of a material: three of the reflectance, concentration, two of the fluorescence.
+pub(super) const UNKNOWNS: usize = 6;
+
+/// A number for each unknown.
+pub(super) type Unknowns = [f64; UNKNOWNS];
+/// A color, or what is left of one.
+pub(super) type Vector = [f64; 3];
+/// Least and greatest value of each unknown.
+pub(super) type Bounds = [[f64; 2]; UNKNOWNS];
+
+/// How far from 565 nm a steepest point may lie, in 100 nm: further out nobody sees it.
+pub(super) const EDGE_BOUND: f64 = 4.0;
+/// Greatest level of a steepest point: at the slope limit 0.01/nm the extremum is then 2.5 nm away,
+/// half a step of the sums. Larger lets a spike hide between two samples.
+pub(super) const LEVEL_BOUND: f64 = 2.5;
+
+/// A place, its color, and how that changes with the unknowns, `[unknown][X Y Z]`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Point {
+    pub(super) x: Unknowns,
+    pub(super) color: Vector,
+    pub(super) by: [Vector; UNKNOWNS],
+}
+
+/// How far colors are from a goal: linear in the color.
+pub(super) trait Measure {
+    /// Three numbers whose squares add up to the square of the distance.
+    fn residual(&self, color: &Vector) -> Vector;
+    /// How they change with a change of the color.
+    fn change(&self, by: &Vector) -> Vector;
+}
+
+/// When to stop.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Limits {
+    /// Good enough, in units of the metric.
+    pub(super) norm_reached: f64,
+    /// Evaluations after the first.
+    pub(super) steps: usize,
+    /// A step that gains less than this share is the last.
+    pub(super) least_gain: f64,
+}
+
+/// First damping, relative to the greatest diagonal entry. Larger crawls, smaller overshoots where
+/// the color cannot be reached.
+const DAMPING: f64 = 1e-4;
+/// Damping after a step that failed.
+const FAILED_DAMPING: f64 = 1e-3;
+/// Damping never falls below this, so that double precision solves what is left.
+pub(super) const LEAST_DAMPING: f64 = 1e-8;
+
+impl Point {
+    /// The distance from the goal.
+    #[inline(always)]
+    pub(super) fn norm(&self, measure: &impl Measure) -> f64 {
+        let residual = measure.residual(&self.color);
+        dot(&residual, &residual).sqrt()
+    }
+
+    /// What is left to the goal, and its derivatives.
+    #[inline(always)]
+    pub(super) fn measured(&self, measure: &impl Measure) -> (Vector, [Vector; UNKNOWNS]) {
+        let mut by = [[0.0; 3]; UNKNOWNS];
+        for v in 0..UNKNOWNS {
+            by[v] = measure.change(&self.by[v]);
+        }
+        (measure.residual(&self.color), by)
+    }
+
+    /// The best point on the way down from `self`, by Levenberg and Marquardt's method.
+    pub(super) fn descend(
+        self,
+        measure: &impl Measure,
+        bounds: &Bounds,
+        limits: Limits,
+        eval: impl Fn(Unknowns) -> Self,
+    ) -> Self {
+        let mut here = self;
+        let mut damping = DAMPING;
+        for _ in 0..limits.steps {
+            let norm = here.norm(measure);
+            if norm <= limits.norm_reached {
+                break;
+            }
+            let (residual, by) = here.measured(measure);
+            let next = shortest_step(&here.x, &residual, &by, bounds, damping);
+            if next == here.x {
+                break;
+            }
+            let there = eval(next);
+            let gain = 1.0 - there.norm(measure) / norm;
+            if gain > 0.0 {
+                here = there;
+                damping = (damping * 0.1).max(LEAST_DAMPING);
+                if gain < limits.least_gain {
+                    break;
+                }
+            } else {
+                damping = (damping * 30.0).max(FAILED_DAMPING);
+            }
+        }
+        here
+    }
+}
+
+/// Where the shortest step leads that takes the residual away, as far as bounds and damping let it.
+///
+/// With M = Σ jᵥjᵥᵀ over the unknowns that move, the step is −jᵥ·(M + μ)⁻¹r. An unknown that would
+/// cross a bound is set on it, and the others make up for what it leaves.
+#[inline(always)]
+pub(super) fn shortest_step<const M: usize>(
+    x: &Unknowns,
+    residual: &[f64; M],
+    by: &[[f64; M]; UNKNOWNS],
+    bounds: &Bounds,
+    damping: f64,
+) -> Unknowns {
+    let mut residual = *residual;
+    let mut next = *x;
+    let mut is_moving = [true; UNKNOWNS];
+    for _ in 0..UNKNOWNS {
+        let mut matrix = [[0.0; M]; M];
+        for v in (0..UNKNOWNS).filter(|&v| is_moving[v]) {
+            for i in 0..M {
+                for k in 0..=i {
+                    matrix[i][k] += by[v][i] * by[v][k];
+                }
+            }
+        }
+        let greatest = (0..M).fold(0.0, |most: f64, i| most.max(matrix[i][i]));
+        for i in 0..M {
+            matrix[i][i] += damping * greatest;
+        }
+        let Some(y) = solve_positive(matrix, residual) else { return next };
+        let mut has_crossed = false;
+        let mut left = residual;
+        for v in 0..UNKNOWNS {
+            let wanted = if is_moving[v] { x[v] - dot(&by[v], &y) } else { next[v] };
+            next[v] = wanted.max(bounds[v][0]).min(bounds[v][1]);
+            if next[v] != wanted {
+                has_crossed = true;
+                is_moving[v] = false;
+                for i in 0..M {
+                    left[i] += by[v][i] * (next[v] - x[v]);
+                }
+            }
+        }
+        if !has_crossed {
+            break;
+        }
+        residual = left;
+    }
+    next
+}
+
+#[inline(always)]
+pub(super) fn dot<const M: usize>(a: &[f64; M], b: &[f64; M]) -> f64 {
+    let mut sum = 0.0;
+    for i in 0..M {
+        sum += a[i] * b[i];
+    }
+    sum
+}
+
+/// Solves a positive definite system given by its lower triangle, as L·D·Lᵀ.
+#[inline(always)]
+fn solve_positive<const M: usize>(mut a: [[f64; M]; M], mut b: [f64; M]) -> Option<[f64; M]> {
+    let mut inverse = [0.0; M];
+    for k in 0..M {
+        inverse[k] = 1.0 / a[k][k];
+        if !(a[k][k] > 0.0 && inverse[k].is_finite()) {
+            return None;
+        }
+        for i in k + 1..M {
+            let factor = a[i][k] * inverse[k];
+            for j in k + 1..=i {
+                a[i][j] -= factor * a[j][k];
+            }
+            b[i] -= factor * b[k];
+        }
+    }
+    for k in (0..M).rev() {
+        for i in k + 1..M {
+            b[k] -= a[i][k] * b[i];
+        }
+        b[k] *= inverse[k];
+    }
+    Some(b)
+}
+
+/// Solves three equations, rows first; `None` where they have no one solution.
+#[inline(always)]
+pub(super) fn solve(m: &[Vector; 3], r: &Vector) -> Option<Vector> {
+    let minors = [cross(&m[1], &m[2]), cross(&m[2], &m[0]), cross(&m[0], &m[1])];
+    let inverse = 1.0 / dot(&m[0], &minors[0]);
+    let x = |k: usize| inverse * (minors[0][k] * r[0] + minors[1][k] * r[1] + minors[2][k] * r[2]);
+    inverse.is_finite().then(|| [x(0), x(1), x(2)])
+}
+
+#[inline(always)]
+fn cross(a: &Vector, b: &Vector) -> Vector {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BY: [Vector; UNKNOWNS] = [
+        [3.0, 1.0, -1.0],
+        [0.5, 2.0, 0.3],
+        [1.0, -1.0, 4.0],
+        [2.0, 0.1, 0.2],
+        [0.0, 1.0, 1.0],
+        [0.0; 3],
+    ];
+
+    fn left(x: &Unknowns, residual: Vector) -> Vector {
+        [0, 1, 2].map(|i| residual[i] + (0..UNKNOWNS).map(|v| x[v] * BY[v][i]).sum::<f64>())
+    }
+
+    #[test]
+    fn a_step_takes_the_residual_away_and_stays_within_bounds() {
+        let residual = [1.0, -2.0, 0.7];
+        for bound in [10.0, 0.7, 0.6] {
+            let bounds = [[-bound, bound]; UNKNOWNS];
+            let x = shortest_step(&[0.0; UNKNOWNS], &residual, &BY, &bounds, LEAST_DAMPING);
+            assert!(x.iter().all(|v| v.abs() <= bound), "{x:?}");
+            // The damping leaves its share of numbers near 1.
+            assert!(left(&x, residual).iter().all(|r| r.abs() < 1e-6), "{bound} {x:?}");
+        }
+    }
+
+    #[test]
+    fn a_color_out_of_reach_is_approached() {
+        let residual = [10.0, -2.0, 0.7];
+        let bounds = [[-0.3, 0.3]; UNKNOWNS];
+        let x = shortest_step(&[0.0; UNKNOWNS], &residual, &BY, &bounds, LEAST_DAMPING);
+        let norm = |r: Vector| dot(&r, &r).sqrt();
+        assert!(norm(left(&x, residual)) < 0.9 * norm(residual), "{x:?}");
+    }
+
+    #[test]
+    fn three_equations_are_solved() {
+        let rows = [[3.0, 1.0, -1.0], [0.5, 2.0, 0.3], [1.0, -1.0, 4.0]];
+        let x = solve(&rows, &[1.0, 2.0, 3.0]).unwrap();
+        for (row, r) in rows.iter().zip([1.0, 2.0, 3.0]) {
+            // Rounding only.
+            assert!((dot(row, &x) - r).abs() < 1e-12);
+        }
+        assert_eq!(solve(&[[1.0; 3]; 3], &[1.0; 3]), None);
+    }
+}

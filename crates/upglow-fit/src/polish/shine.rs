@@ -1,0 +1,414 @@
+//! Colors of single materials in single precision, with their derivatives.
+
+use fearless_simd::prelude::*;
+use fearless_simd::{Level, dispatch, f32x8};
+use upglow::{AnalyticModel, Model, ModelOnGrid};
+
+use crate::parabola::{Parabola, scaled};
+
+/// Samples of one curve at the wavelengths that the observer sees, padded to whole vectors.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+pub(super) struct Lanes([f32; LANES]);
+
+/// 360, 365 … 830 nm are 95 samples of the 5 nm grid.
+const LANES: usize = 96;
+/// How many sums run side by side. It is the same on every machine, and no product is fused with a
+/// sum, so the bits of a result are the same too.
+const WIDTH: usize = 8;
+
+/// Three wavelengths, nm, at which a reflectance is given by its values: where blue, green and red
+/// are seen most, so that colors are nearly linear in the values and each value has its own.
+pub(super) const CHART_NM: [f64; 3] = [455.0, 545.0, 610.0];
+
+/// An absorption, by itself and as the observer sees it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Absorber {
+    curve: Lanes,
+    weighted: [Lanes; 3],
+}
+
+/// Curves and weights of the sums.
+#[derive(Clone, Debug)]
+pub(super) struct Sums {
+    level: Level,
+    t: Lanes,
+    weights: [Lanes; 3],
+    /// The weights times the parabola that is 1 at one chart wavelength and 0 at the others,
+    /// `[chart wavelength][X Y Z]`.
+    chart_weights: [[Lanes; 3]; 3],
+    /// Those parabolas, `[chart wavelength][coefficient]`.
+    chart: [Parabola; 3],
+    /// Dyes in ring order.
+    dyes: Vec<Absorber>,
+    clear: Absorber,
+    bells: Option<Bells>,
+}
+
+/// What a reflectance shows.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shown {
+    pub(super) color: [f32; 3],
+    /// Derivatives of the color by the parabola's coefficients of 1, d, d², or by its values at the
+    /// chart wavelengths.
+    pub(super) by: [[f32; 3]; 3],
+    /// ∫ w·absorption·r for two absorbers.
+    pub(super) seen: [[f32; 3]; 2],
+}
+
+impl Lanes {
+    const ZERO: Self = Self([0.0; LANES]);
+
+    fn from_fn(f: impl Fn(usize) -> f32) -> Self {
+        Self(std::array::from_fn(f))
+    }
+
+    #[inline(always)]
+    fn at<S: Simd>(&self, simd: S, at: usize) -> f32x8<S> {
+        f32x8::from_slice(simd, &self.0[at..at + WIDTH])
+    }
+}
+
+impl Sums {
+    pub(super) fn new(model: &ModelOnGrid) -> Self {
+        let all = model.colorimetry().weights();
+        let first = all.iter().position(|w| w.iter().any(|v| *v != 0.0)).unwrap_or(0);
+        assert!(all.len() - first <= LANES, "fits run on the 5 nm grid");
+        let visible = |of: &dyn Fn(usize) -> f64| {
+            Lanes::from_fn(|i| if first + i < all.len() { to_single(of(first + i)) } else { 0.0 })
+        };
+        let t = |i: usize| scaled(model.wavelengths_nm()[i]);
+        let weights = [0, 1, 2].map(|k| visible(&|i| all[i][k]));
+        let chart = [0, 1, 2].map(lagrange);
+        let chart_weights = chart.map(|[q0, q1, q2]| {
+            [0, 1, 2].map(|k| visible(&|i| all[i][k] * (q0 + t(i) * (q1 + t(i) * q2))))
+        });
+        let absorber = |curve: Lanes| Absorber::new(curve, &weights);
+        let dyes = match model.model() {
+            Model::Dyes(dyes) => (0..dyes.curves().len())
+                .map(|dye| absorber(visible(&|i| model.dye_absorption(dye)[i])))
+                .collect(),
+            _ => Vec::new(),
+        };
+        let bells = match model.model() {
+            Model::Analytic(bells) => Some(Bells::new(bells, model, first)),
+            _ => None,
+        };
+        Self {
+            level: Level::new(),
+            t: visible(&t),
+            weights,
+            chart_weights,
+            chart,
+            dyes,
+            clear: absorber(Lanes::ZERO),
+            bells,
+        }
+    }
+
+    pub(super) fn dye(&self, dye: usize) -> &Absorber {
+        &self.dyes[dye]
+    }
+
+    pub(super) fn clear(&self) -> &Absorber {
+        &self.clear
+    }
+
+    /// The parabola that has these values at the chart wavelengths.
+    #[inline(always)]
+    pub(super) fn parabola(&self, [a, b, c]: [f64; 3]) -> Parabola {
+        let [to_a, to_b, to_c] = &self.chart;
+        let mut parabola = [0.0; 3];
+        for m in 0..3 {
+            parabola[m] = a * to_a[m] + b * to_b[m] + c * to_c[m];
+        }
+        parabola
+    }
+
+    pub(super) fn chart(&self, i: usize) -> &Parabola {
+        &self.chart[i]
+    }
+
+    /// The color of the reflectance whose parabola has these values at the chart wavelengths, and
+    /// its derivatives by them.
+    pub(super) fn reflect_chart(&self, parabola: &Parabola) -> Shown {
+        let parabola = parabola.map(to_single);
+        dispatch!(self.level, simd => simd.vectorize(
+            #[inline(always)]
+            || self.reflect_chart_in_vectors(simd, parabola),
+        ))
+    }
+
+    #[inline(always)]
+    fn reflect_chart_in_vectors<S: Simd>(&self, simd: S, parabola: [f32; 3]) -> Shown {
+        let splat = |v: f32| f32x8::splat(simd, v);
+        let [q0, q1, q2] = parabola;
+        let [q0, q1, q2] = [splat(q0), splat(q1), splat(q2)];
+        let (half, one, zero) = (splat(0.5), splat(1.0), splat(0.0));
+        let mut color = [zero; 3];
+        let mut by = [[zero; 3]; 3];
+        for at in (0..LANES).step_by(WIDTH) {
+            let t = self.t.at(simd, at);
+            let x = q0 + t * (q1 + t * q2);
+            let inverse = one / (one + x * x).sqrt();
+            let half_inverse = half * inverse;
+            let r = half + x * half_inverse;
+            let slope = half_inverse * (inverse * inverse);
+            for k in 0..3 {
+                color[k] += r * self.weights[k].at(simd, at);
+                for i in 0..3 {
+                    by[i][k] += slope * self.chart_weights[i][k].at(simd, at);
+                }
+            }
+        }
+        Shown { color: totals(color), by: by_totals(by), seen: [[0.0; 3]; 2] }
+    }
+
+    /// The color of the reflectance with the parabola `p + d·(b + d·k)`, d = t − `center`, behind
+    /// two absorbers with their shares; derivatives by p, b and k.
+    pub(super) fn reflect(
+        &self,
+        center: f64,
+        parabola: &Parabola,
+        absorbers: [&Absorber; 2],
+        shares: [f64; 2],
+    ) -> Shown {
+        let (center, parabola) = (to_single(center), parabola.map(to_single));
+        let shares = shares.map(to_single);
+        dispatch!(self.level, simd => simd.vectorize(
+            #[inline(always)]
+            || self.reflect_in_vectors(simd, center, parabola, absorbers, shares),
+        ))
+    }
+
+    #[inline(always)]
+    fn reflect_in_vectors<S: Simd>(
+        &self,
+        simd: S,
+        center: f32,
+        parabola: [f32; 3],
+        [first, second]: [&Absorber; 2],
+        shares: [f32; 2],
+    ) -> Shown {
+        let splat = |v: f32| f32x8::splat(simd, v);
+        let ([p, b, k], center) = (parabola, splat(center));
+        let [p, b, k] = [splat(p), splat(b), splat(k)];
+        let [share_a, share_b] = [splat(shares[0]), splat(shares[1])];
+        let (half, one, zero) = (splat(0.5), splat(1.0), splat(0.0));
+        let mut slopes = [zero; LANES / WIDTH];
+        let mut color = [zero; 3];
+        let mut seen = [[zero; 3]; 2];
+        for (lane, slope) in slopes.iter_mut().enumerate() {
+            let at = lane * WIDTH;
+            let d = self.t.at(simd, at) - center;
+            let x = p + d * (b + d * k);
+            let inverse = one / (one + x * x).sqrt();
+            let half_inverse = half * inverse;
+            let r = half + x * half_inverse;
+            let absorbed = share_a * first.curve.at(simd, at) + share_b * second.curve.at(simd, at);
+            *slope = half_inverse * (inverse * inverse) * (one - absorbed);
+            for k in 0..3 {
+                color[k] += r * self.weights[k].at(simd, at);
+                seen[0][k] += r * first.weighted[k].at(simd, at);
+                seen[1][k] += r * second.weighted[k].at(simd, at);
+            }
+        }
+        let mut by = [[zero; 3]; 3];
+        for (lane, slope) in slopes.into_iter().enumerate() {
+            let at = lane * WIDTH;
+            let d = self.t.at(simd, at) - center;
+            let slope_d = slope * d;
+            let slope_dd = slope_d * d;
+            for k in 0..3 {
+                let w = self.weights[k].at(simd, at);
+                by[0][k] += slope * w;
+                by[1][k] += slope_d * w;
+                by[2][k] += slope_dd * w;
+            }
+        }
+        let (mut color, seen) = (totals(color), [totals(seen[0]), totals(seen[1])]);
+        for k in 0..3 {
+            color[k] -= shares[0] * seen[0][k] + shares[1] * seen[1][k];
+        }
+        Shown { color, by: by_totals(by), seen }
+    }
+
+    /// The absorption of a bell around `center_nm`, and its derivative by the center, 1/nm.
+    pub(super) fn bell_absorbers(&self, center_nm: f64) -> [Absorber; 2] {
+        let Some(bells) = &self.bells else { return [self.clear; 2] };
+        let (center_nm, step_nm) = (to_single(center_nm), bells.absorption_step_nm);
+        dispatch!(self.level, simd => simd.vectorize(
+            #[inline(always)]
+            || {
+                let (mut curve, mut by_center) = (Lanes::ZERO, Lanes::ZERO);
+                for i in 0..LANES {
+                    let (b, slope) = bell((bells.visible_nm.0[i] - center_nm) / step_nm);
+                    curve.0[i] = 1.5 * b;
+                    by_center.0[i] = -1.5 / step_nm * slope;
+                }
+                [Absorber::new(curve, &self.weights), Absorber::new(by_center, &self.weights)]
+            },
+        ))
+    }
+}
+
+impl Absorber {
+    #[inline(always)]
+    fn new(curve: Lanes, weights: &[Lanes; 3]) -> Self {
+        let weighted = weights.each_ref().map(|w| {
+            let mut weighted = Lanes::ZERO;
+            for i in 0..LANES {
+                weighted.0[i] = curve.0[i] * w.0[i];
+            }
+            weighted
+        });
+        Self { curve, weighted }
+    }
+}
+
+/// The bells of the analytic model.
+#[derive(Clone, Debug)]
+pub(super) struct Bells {
+    visible_nm: Lanes,
+    absorption_step_nm: f32,
+}
+
+impl Bells {
+    fn new(bells: &AnalyticModel, model: &ModelOnGrid, first: usize) -> Self {
+        // A bell of unit area and knot step h has a peak of 2/(3h); steps are as widths.
+        let emission_step_nm = 2.0 / 3.0 / bells.emission(550.0, 550.0).0;
+        let share = bells.absorption_fwhm_nm() / bells.emission_fwhm_nm();
+        let nm = model.wavelengths_nm();
+        Self {
+            visible_nm: Lanes::from_fn(|i| nm.get(first + i).map_or(0.0, |&nm| to_single(nm))),
+            absorption_step_nm: to_single(emission_step_nm * share),
+        }
+    }
+}
+
+/// The uniform cubic B-spline of knot step 1 and area 1 at `u`, and its slope.
+#[inline(always)]
+fn bell(u: f32) -> (f32, f32) {
+    let v = u.abs();
+    let outer = if v < 2.0 { 2.0 - v } else { 0.0 };
+    let inner = if v < 1.0 { 1.0 - v } else { 0.0 };
+    let value = (outer * outer * outer - 4.0 * inner * inner * inner) / 6.0;
+    let slope = 0.5 * (4.0 * inner * inner - outer * outer);
+    (value, if u < 0.0 { -slope } else { slope })
+}
+
+/// The parabola in t that is 1 at chart wavelength `i` and 0 at the others.
+fn lagrange(i: usize) -> Parabola {
+    let t = CHART_NM.map(scaled);
+    let (a, b, here) = (t[(i + 1) % 3], t[(i + 2) % 3], t[i]);
+    let scale = 1.0 / ((here - a) * (here - b));
+    [a * b * scale, -(a + b) * scale, scale]
+}
+
+/// The sums of three vectors' lanes, in an order that is the same on every machine.
+#[inline(always)]
+fn totals<S: Simd>(vectors: [f32x8<S>; 3]) -> [f32; 3] {
+    let mut totals = [0.0; 3];
+    for k in 0..3 {
+        let (low, high) = vectors[k].split();
+        let four = low + high;
+        totals[k] = (four[0] + four[2]) + (four[1] + four[3]);
+    }
+    totals
+}
+
+#[inline(always)]
+fn by_totals<S: Simd>([a, b, c]: [[f32x8<S>; 3]; 3]) -> [[f32; 3]; 3] {
+    [totals(a), totals(b), totals(c)]
+}
+
+/// The nearest number in single precision.
+#[expect(clippy::cast_possible_truncation, reason = "rounding is what it is for")]
+#[inline(always)]
+pub(super) fn to_single(value: f64) -> f32 {
+    value as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use upglow::{DyeModel, DyeOptions, DyeSet, Edge, Fluorescence, Material};
+    use upglow_color::{Contract, Grid};
+
+    fn dyes() -> ModelOnGrid {
+        let dyes = DyeModel::new(DyeSet::named("seed8").unwrap(), DyeOptions::default()).unwrap();
+        ModelOnGrid::new(&Model::Dyes(dyes), &Contract::default().on(Grid::FIT))
+    }
+
+    /// Edge (t), level, slope (1/nm), and shares of two dyes.
+    const MATERIALS: [([f64; 3], [f64; 2]); 4] = [
+        ([0.3, 0.5, 0.01], [0.0, 0.0]),
+        ([-1.2, -1.5, -0.007], [0.3, 0.6]),
+        ([0.0, -0.4, 0.0], [0.0, 1.0]),
+        ([1.1, 2.4, 0.009], [0.5, 0.1]),
+    ];
+
+    fn parabola([_, level, slope_per_nm]: [f64; 3]) -> Parabola {
+        let [p, b, k] = Edge { edge_nm: 0.0, level, slope_per_nm }.parabola();
+        [p, 100.0 * b, 1e4 * k]
+    }
+
+    #[test]
+    fn the_bits_are_the_same_with_and_without_wide_vectors() {
+        let sums = Sums::new(&dyes());
+        let plain = Sums { level: Level::baseline(), ..sums.clone() };
+        for (numbers, shares) in MATERIALS {
+            let colors = [&sums, &plain].map(|sums| {
+                let absorbers = [sums.dye(2), sums.dye(3)];
+                let shown = sums.reflect(numbers[0], &parabola(numbers), absorbers, shares);
+                let chart = sums.reflect_chart(&parabola(numbers));
+                (shown.color, shown.by, shown.seen, chart.color, chart.by)
+            });
+            assert_eq!(colors[0], colors[1]);
+        }
+    }
+
+    #[test]
+    fn colors_are_those_of_the_model() {
+        // Single precision of numbers near 10 under the root.
+        const SINGLE: f64 = 2e-6;
+        let model = dyes();
+        let sums = Sums::new(&model);
+        for (numbers, [a, b]) in MATERIALS {
+            let [e, level, slope_per_nm] = numbers;
+            let edge = Edge { edge_nm: 565.0 + 100.0 * e, level, slope_per_nm };
+            let shown = sums.reflect(e, &parabola(numbers), [sums.dye(2), sums.dye(3)], [a, b]);
+            let expected = match a + b {
+                0.0 => model.color(Material::passive(edge.to_sigmoid())).0,
+                c => {
+                    let weight = b / c;
+                    let Model::Dyes(dyes) = model.model() else { unreachable!() };
+                    let emitted = model.emitted_by_dyes(dyes, 2, weight).color;
+                    let fluorescence = Fluorescence::Dyes { first: 2, weight, concentration: c };
+                    let material = Material { reflectance: edge.to_sigmoid(), fluorescence };
+                    let color = model.color(material).0;
+                    [0, 1, 2].map(|k| color[k] - c * emitted[k])
+                }
+            };
+            for k in 0..3 {
+                let off = f64::from(shown.color[k]) - expected[k];
+                assert!(off.abs() < SINGLE, "{numbers:?} {off}");
+            }
+        }
+    }
+
+    #[test]
+    fn bells_are_those_of_the_model() {
+        let analytic = AnalyticModel::default();
+        let contract = Contract::default().on(Grid::FIT);
+        let sums = Sums::new(&ModelOnGrid::new(&Model::Analytic(analytic), &contract));
+        let [absorber, by_center] = sums.bell_absorbers(480.3);
+        for i in 0..95 {
+            let nm = f64::from(sums.bells.as_ref().unwrap().visible_nm.0[i]);
+            let (value, slope) = analytic.absorption(480.3, nm);
+            // Single precision of numbers up to 1 and of slopes near 0.05.
+            assert!((f64::from(absorber.curve.0[i]) - value).abs() < 1e-5, "{nm}");
+            assert!((f64::from(by_center.curve.0[i]) - slope).abs() < 1e-6, "{nm}");
+        }
+    }
+}

@@ -1,0 +1,151 @@
+//! Where a texel's material starts: between the materials of its corners.
+
+use upglow::{Edge, Features, Model};
+
+use crate::parabola::{MIDDLE_NM, edge_of, feature_chart, scaled, sigmoid_of};
+use crate::polish::UNIT_NM;
+use crate::polish::corner::{Corner, Corners, all, mean};
+use crate::polish::descent::LEVEL_BOUND;
+
+/// Which curves fluoresce.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Family {
+    /// None.
+    Passive,
+    /// This dye and its neighbor; the unknown is the weight.
+    Pair(usize),
+    /// Bells; the unknowns are emission peak and Stokes shift, 100 nm.
+    Bells,
+}
+
+/// A fluorescence as the solver moves it: concentration, and the unknowns of its family.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Glow {
+    pub(super) family: Family,
+    pub(super) numbers: [f64; 3],
+}
+
+/// Widths beyond this, nm, are those of nearly straight reflectances: they have no useful mean.
+const WIDEST_NM: f64 = 3000.0;
+/// How far from the heaviest corner's place in the ring the others may lie to take part in the
+/// mean: beyond a neighbor, the dyes between are those of neither.
+const RING_REACH: f64 = 1.0;
+/// The same for emission peaks and Stokes shifts, 100 nm. Larger lets the mean fall between two
+/// bells, smaller makes steps in places where one mean would do.
+const BELL_REACH: [f64; 2] = [0.3, 0.4];
+
+/// The reflectance between the corners' edges: mean edges where all rise or all fall, mean features
+/// where all are peaks or all valleys, mean parabolas else.
+pub(super) fn edge(corners: &Corners<'_>) -> Edge {
+    if all(corners, |c| c.edge[2] > 0.0) || all(corners, |c| c.edge[2] < 0.0) {
+        let [e, level, slope_per_nm] = [0, 1, 2].map(|i| mean(corners, |c| c.edge[i]));
+        return edge_of([e, level, slope_per_nm], 1.0);
+    }
+    let alike = all(corners, |c| c.edge[1] > 0.0) || all(corners, |c| c.edge[1] < 0.0);
+    alike.then(|| features(corners)).flatten().unwrap_or_else(|| parabolas(corners))
+}
+
+fn features(corners: &Corners<'_>) -> Option<Edge> {
+    let mut sum = [0.0; 3];
+    for (weight, corner) in corners.iter().filter(|(weight, _)| *weight > 0.0) {
+        let Features { shift_nm, width_nm, slope_per_nm } =
+            corner.edge().to_sigmoid().to_vertex()?.to_features()?;
+        if width_nm > WIDEST_NM {
+            return None;
+        }
+        let numbers = [scaled(shift_nm), width_nm / UNIT_NM, slope_per_nm];
+        (0..3).for_each(|i| sum[i] += weight * numbers[i]);
+    }
+    Some(sigmoid_of(feature_chart(sum, 1.0).0).to_edge(MIDDLE_NM))
+}
+
+fn parabolas(corners: &Corners<'_>) -> Edge {
+    let mut sum = [0.0; 3];
+    for (weight, corner) in corners.iter().filter(|(weight, _)| *weight > 0.0) {
+        let mut edge = corner.edge();
+        // Black and white lie at infinity: they would be the mean of whatever they take part in.
+        edge.level = edge.level.clamp(-LEVEL_BOUND, LEVEL_BOUND);
+        let [p, b, k] = edge.parabola();
+        let (b, k, e) = (b * UNIT_NM, k * UNIT_NM * UNIT_NM, f64::from(corner.edge[0]));
+        let numbers = [p - b * e + k * e * e, b - 2.0 * k * e, k];
+        (0..3).for_each(|i| sum[i] += weight * numbers[i]);
+    }
+    sigmoid_of(sum).to_edge(MIDDLE_NM)
+}
+
+/// The fluorescence between the corners'; passive only where all of them are.
+#[inline(always)]
+pub(super) fn glow(corners: &Corners<'_>, model: &Model) -> Glow {
+    if all(corners, |c| c.concentration == 0.0) {
+        return Glow { family: Family::Passive, numbers: [0.0; 3] };
+    }
+    let (mut heaviest, mut most) = (corners[0].1, 0.0);
+    for (weight, corner) in corners {
+        let share = weight * f64::from(corner.concentration);
+        if share > most {
+            (heaviest, most) = (corner, share);
+        }
+    }
+    let concentration = mean(corners, |c| c.concentration);
+    glow_around(heaviest, concentration, corners, model)
+}
+
+/// The fluorescence of one corner.
+pub(super) fn glow_of(corner: &Corner, model: &Model) -> Glow {
+    let alone = [(1.0, corner), (0.0, corner), (0.0, corner), (0.0, corner)];
+    glow(&alone, model)
+}
+
+/// The mean of the fluorescences that are like that of `heaviest`.
+fn glow_around(
+    heaviest: &Corner,
+    concentration: f64,
+    corners: &Corners<'_>,
+    model: &Model,
+) -> Glow {
+    let (reach, ring) = match model {
+        Model::Reflectance => return Glow { family: Family::Passive, numbers: [0.0; 3] },
+        Model::Analytic(_) => (BELL_REACH, f64::INFINITY),
+        Model::Dyes(dyes) if dyes.pairs() < 3 => ([RING_REACH, 0.0], f64::INFINITY),
+        Model::Dyes(dyes) => ([RING_REACH, 0.0], dyes.pairs() as f64),
+    };
+    let center = heaviest.hue.map(f64::from);
+    let (mut total, mut sum) = (0.0, [0.0; 2]);
+    for (weight, corner) in corners {
+        let share = weight * f64::from(corner.concentration);
+        let [mut off, other] = [0, 1].map(|i| f64::from(corner.hue[i]) - center[i]);
+        if off.abs() > 0.5 * ring {
+            off -= ring.copysign(off);
+        }
+        if off.abs() <= reach[0] && other.abs() <= reach[1] {
+            total += share;
+            sum[0] += share * off;
+            sum[1] += share * other;
+        }
+    }
+    let [u, v] = [0, 1].map(|i| center[i] + sum[i] / total);
+    match model {
+        Model::Dyes(_) => {
+            let (first, weight) = pair_at(u, ring);
+            Glow { family: Family::Pair(first), numbers: [concentration, weight, 0.0] }
+        }
+        _ => Glow { family: Family::Bells, numbers: [concentration, u, v] },
+    }
+}
+
+/// The pair of dyes and the weight at a place in a ring of this length; one of infinite length has
+/// a single pair.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "the place is in the ring and its fraction is the weight"
+)]
+fn pair_at(place: f64, ring: f64) -> (usize, f64) {
+    if ring.is_infinite() {
+        return (0, place.clamp(0.0, 1.0));
+    }
+    let place = if place < 0.0 { place + ring } else { place };
+    let place = if place >= ring { place - ring } else { place };
+    let first = place as usize;
+    (first, place - first as f64)
+}

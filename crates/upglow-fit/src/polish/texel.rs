@@ -1,0 +1,432 @@
+//! The way to the material of one texel.
+
+use upglow::{Edge, Fluorescence, Node, Sigmoid};
+use upglow_color::{Goal, LinearRgb, Matrix3, Metric, Xyz};
+
+use crate::fitter::EXACT;
+use crate::parabola::{MIDDLE_NM, sigmoid_of};
+use crate::polish::Polisher;
+use crate::polish::corner::{Corners, all, mean};
+use crate::polish::descent::{
+    Bounds, LEAST_DAMPING, Limits, Measure, Point, Unknowns, Vector, dot, shortest_step, solve,
+};
+use crate::polish::place::{
+    STEEPNESS_WEIGHT, bounds, by_values, inside, parabola_values, value_bounds,
+};
+use crate::polish::shine::Shown;
+use crate::polish::start::{self, Family, Glow};
+
+/// CIEDE2000 is at most this many times a small distance in Lab: 1.5 near gray, where it stretches
+/// a*, and little more in the blue, where it turns. A test looks for more.
+const DE2000_PER_LAB: f64 = 1.8;
+/// A distance in Lab, linear around the color, at which a material shows it: CIEDE2000 is then
+/// below three quarters of [`EXACT`], and what is left is for the rounding of what is stored.
+const NEAR: f64 = 0.75 * EXACT / DE2000_PER_LAB;
+/// Evaluations of reflectance alone: two are enough nearly always.
+const PASSIVE_STEPS: usize = 6;
+/// Evaluations with fluorescence: three in the mean.
+const GLOWING_STEPS: usize = 7;
+/// How many steps in the chart of values may lead further away before it is given up. With none, a
+/// sixth more texels go the long way.
+const MOST_SETBACKS: usize = 1;
+/// Rounds in which CIEDE2000 is taken as linear around the color at hand.
+const ROUNDS: usize = 4;
+/// Evaluations in each round. More of them lead along directions that are no longer right.
+const ROUND_STEPS: usize = 2;
+/// A round that gains less than this share is the last.
+const LEAST_GAIN: f64 = 0.05;
+/// How much further from the color than the blend a material may be before other starts are tried,
+/// ΔE00: half of what an eye can tell. Smaller tries them in vain, as blends show more than single
+/// materials do.
+const WORSE_THAN_BLEND: f64 = 0.5;
+/// Materials that miss by this much more than the blend are worth all starts there are, ΔE00.
+const PLAIN_TO_SEE: f64 = 2.0;
+
+/// One texel.
+pub(super) struct Texel<'p, 'c, 'n> {
+    pub(super) polisher: &'p Polisher<'c>,
+    pub(super) rgb: LinearRgb,
+    target: Vector,
+    lab: LabAround,
+    corners: &'p Corners<'n>,
+}
+
+/// Differences in Lab, as linear around a color.
+#[derive(Clone, Copy, Debug)]
+struct LabAround {
+    target: Vector,
+    /// 500, 116 or 200 times the derivatives of the compressed responses by X, Y, Z.
+    a_by_x: f64,
+    l_by_y: f64,
+    a_by_y: f64,
+    b_by_y: f64,
+    b_by_z: f64,
+}
+
+impl LabAround {
+    fn new(target: Vector, white: &Vector) -> Self {
+        let [x, y, z] = [0, 1, 2].map(|k| response_slope(target[k] / white[k]) / white[k]);
+        Self {
+            target,
+            a_by_x: 500.0 * x,
+            l_by_y: 116.0 * y,
+            a_by_y: 500.0 * y,
+            b_by_y: 200.0 * y,
+            b_by_z: 200.0 * z,
+        }
+    }
+}
+
+impl Measure for LabAround {
+    #[inline(always)]
+    fn residual(&self, color: &Vector) -> Vector {
+        let t = &self.target;
+        self.change(&[color[0] - t[0], color[1] - t[1], color[2] - t[2]])
+    }
+
+    #[inline(always)]
+    fn change(&self, [x, y, z]: &Vector) -> Vector {
+        [self.l_by_y * y, self.a_by_x * x - self.a_by_y * y, self.b_by_y * y - self.b_by_z * z]
+    }
+}
+
+/// The slope of Lab's compressed response, to one part in a thousand, which is plenty to weigh
+/// distances by: 1/3·v^(−2/3), and a constant below (6/29)³.
+fn response_slope(v: f64) -> f64 {
+    const KNEE: f64 = 216.0 / 24389.0;
+    let v = v.max(KNEE);
+    // An inverse cube root from a third of the exponent, and two of Newton's steps.
+    let mut root = f64::from_bits(0x553e_f0ff_289d_d796 - v.to_bits() / 3);
+    for _ in 0..2 {
+        root *= (4.0 - v * root * root * root) / 3.0;
+    }
+    root * root / 3.0
+}
+
+/// CIEDE2000 as it is around a color.
+#[derive(Clone, Copy, Debug)]
+struct Linear {
+    center: Vector,
+    residual: Vector,
+    by_color: Matrix3,
+}
+
+impl Linear {
+    fn new(goal: &Goal, center: Vector) -> Self {
+        let (residual, by_color) = goal.residuals(Xyz(center));
+        Self { center, residual, by_color }
+    }
+}
+
+impl Measure for Linear {
+    #[inline(always)]
+    fn residual(&self, color: &Vector) -> Vector {
+        let moved = self.change(&[0, 1, 2].map(|k| color[k] - self.center[k]));
+        [0, 1, 2].map(|k| self.residual[k] + moved[k])
+    }
+
+    #[inline(always)]
+    fn change(&self, by: &Vector) -> Vector {
+        let [x, y, z] = &self.by_color.0;
+        [dot(x, by), dot(y, by), dot(z, by)]
+    }
+}
+
+impl<'p, 'c, 'n> Texel<'p, 'c, 'n> {
+    pub(super) fn new(
+        polisher: &'p Polisher<'c>,
+        rgb: LinearRgb,
+        corners: &'p Corners<'n>,
+    ) -> Self {
+        let colorimetry = polisher.fitter.model().colorimetry();
+        let target = colorimetry.xyz_from_rgb(rgb).0;
+        let lab = LabAround::new(target, &colorimetry.white().0);
+        Self { polisher, rgb, target, lab, corners }
+    }
+
+    /// The material of the texel, and its distance.
+    pub(super) fn polish(&self) -> Node {
+        if let Some(gray) = self.gray() {
+            return gray;
+        }
+        let glow = start::glow(self.corners, self.polisher.cube.model());
+        let is_hopeless = self.is_hopeless();
+        let direct = match glow.family {
+            _ if is_hopeless => None,
+            Family::Passive => self.passive(),
+            _ => self.glowing(&glow),
+        };
+        direct.unwrap_or_else(|| self.nearest(&glow, is_hopeless))
+    }
+
+    /// The material between the corners', one step nearer to the color; its distance is not known.
+    pub(super) fn interpolate(&self) -> Node {
+        if let Some(gray) = self.gray() {
+            return gray;
+        }
+        let polisher = self.polisher;
+        let glow = start::glow(self.corners, polisher.cube.model());
+        if self.is_hopeless() {
+            return self.within_limit(start::edge(self.corners), glow.fluorescence());
+        }
+        let [a, b, d] = inside(self.mean_values());
+        if glow.family == Family::Passive {
+            let x = parabola_values(&[a, b, d]);
+            let shown = polisher.sums.reflect_chart(&polisher.sums.parabola(x));
+            let values = self.passive_step(&[a, b, d], &x, &shown).unwrap_or([a, b, d]);
+            let edge = sigmoid_of(polisher.sums.parabola(parabola_values(&values)));
+            return self.within_limit(edge.to_edge(MIDDLE_NM), Fluorescence::None);
+        }
+        let [c, u, v] = glow.numbers;
+        let here = polisher.point_of_values(glow.family, [a, b, d, c, u, v]);
+        let mut bounds = bounds(glow.family, polisher.cube.model());
+        bounds[..3].copy_from_slice(&value_bounds(&[a, b, d]));
+        let steep = polisher.steepness_squared(&polisher.parabola_at(&here.x));
+        let (x, _) = self.glowing_step(&here, steep, &bounds);
+        let [.., c, u, v] = x;
+        let fluorescence = Glow { family: glow.family, numbers: [c, u, v] }.fluorescence();
+        self.within_limit(polisher.edge_of_values(&x), fluorescence)
+    }
+
+    /// A reflectance made as soft as the limit demands.
+    fn within_limit(&self, edge: Edge, fluorescence: Fluorescence) -> Node {
+        let limit = self.polisher.slope_limit_per_nm;
+        let slope_per_nm = edge.slope_per_nm.clamp(-limit, limit);
+        Node::new(Edge { slope_per_nm, ..edge }, fluorescence, f64::NAN)
+    }
+
+    /// A flat reflectance where the color is a gray.
+    fn gray(&self) -> Option<Node> {
+        let [r, g, b] = self.rgb.0;
+        (self.polisher.grays_are_flat && r == g && g == b)
+            .then(|| Node::new(Sigmoid::flat(r).to_edge(MIDDLE_NM), Fluorescence::None, 0.0))
+    }
+
+    /// Whether no corner shows its color.
+    fn is_hopeless(&self) -> bool {
+        all(self.corners, |c| f64::from(c.de2000) > EXACT)
+    }
+
+    /// Reflectance alone from the mean of the corners, if that needs no bounds.
+    fn passive(&self) -> Option<Node> {
+        let sums = &self.polisher.sums;
+        let mut values = inside(self.mean_values());
+        for _ in 0..PASSIVE_STEPS {
+            let x = parabola_values(&values);
+            let parabola = sums.parabola(x);
+            let shown = sums.reflect_chart(&parabola);
+            let color = shown.color.map(f64::from);
+            let lab = self.lab.residual(&color);
+            let squared = dot(&lab, &lab);
+            if squared <= NEAR * NEAR {
+                if self.polisher.steepness_squared(&parabola) > 1.0 {
+                    return None;
+                }
+                let edge = sigmoid_of(parabola).to_edge(MIDDLE_NM);
+                return Some(node(edge, Fluorescence::None, squared.sqrt()));
+            }
+            values = self.passive_step(&values, &x, &shown)?;
+        }
+        None
+    }
+
+    /// Newton's step from `values`, whose parabola is `x` at the chart wavelengths.
+    fn passive_step(&self, values: &Vector, x: &Vector, shown: &Shown) -> Option<Vector> {
+        let scale = by_values(x);
+        let mut rows = [[0.0; 3]; 3];
+        let mut residual = [0.0; 3];
+        for k in 0..3 {
+            residual[k] = f64::from(shown.color[k]) - self.target[k];
+            for i in 0..3 {
+                rows[k][i] = scale[i] * f64::from(shown.by[i][k]);
+            }
+        }
+        let step = solve(&rows, &residual)?;
+        let bounds = value_bounds(values);
+        let mut next = *values;
+        for i in 0..3 {
+            next[i] = (values[i] - step[i]).max(bounds[i][0]).min(bounds[i][1]);
+        }
+        Some(next)
+    }
+
+    /// Reflectance and fluorescence from the mean of the corners, in the chart of values.
+    fn glowing(&self, glow: &Glow) -> Option<Node> {
+        let polisher = self.polisher;
+        let family = glow.family;
+        let mut bounds = bounds(family, polisher.cube.model());
+        let ([a, b, d], [c, u, v]) = (inside(self.mean_values()), glow.numbers);
+        let mut here = polisher.point_of_values(family, [a, b, d, c, u, v]);
+        let mut steep = polisher.steepness_squared(&polisher.parabola_at(&here.x));
+        let mut setbacks = 0;
+        for _ in 0..GLOWING_STEPS {
+            if here.norm(&self.lab) <= NEAR && steep <= 1.0 {
+                return Some(self.glowing_node(family, &here));
+            }
+            let values = [here.x[0], here.x[1], here.x[2]];
+            bounds[..3].copy_from_slice(&value_bounds(&values));
+            let (next, next_steep) = self.glowing_step(&here, steep, &bounds);
+            let there = polisher.point_of_values(family, next);
+            if self.merit(&there, next_steep) >= self.merit(&here, steep) {
+                setbacks += 1;
+                if setbacks > MOST_SETBACKS {
+                    return None;
+                }
+            }
+            (here, steep) = (there, next_steep);
+        }
+        None
+    }
+
+    /// Where a step in the chart of values leads, and the square of the steepness there.
+    fn glowing_step(&self, here: &Point, steep: f64, bounds: &Bounds) -> (Unknowns, f64) {
+        let steepness =
+            |x: &Unknowns| self.polisher.steepness_squared(&self.polisher.parabola_at(x));
+        if steep <= 1.0 {
+            let (residual, by) = here.measured(&self.lab);
+            let next = shortest_step(&here.x, &residual, &by, bounds, LEAST_DAMPING);
+            let next_steep = steepness(&next);
+            if next_steep <= 1.0 {
+                return (next, next_steep);
+            }
+        }
+        let next = self.polisher.step_along_limit(here, &self.lab, bounds, LEAST_DAMPING);
+        (next, steepness(&next))
+    }
+
+    /// What a point lacks in color and slope.
+    fn merit(&self, point: &Point, steepness_squared: f64) -> f64 {
+        point.norm(&self.lab) + STEEPNESS_WEIGHT * (steepness_squared - 1.0).max(0.0)
+    }
+
+    fn glowing_node(&self, family: Family, found: &Point) -> Node {
+        let [.., c, u, v] = found.x;
+        let fluorescence = Glow { family, numbers: [c, u, v] }.fluorescence();
+        node(self.polisher.edge_of_values(&found.x), fluorescence, found.norm(&self.lab))
+    }
+
+    /// The nearest material that the starts lead to, in the chart of edges.
+    fn nearest(&self, glow: &Glow, is_hopeless: bool) -> Node {
+        let colorimetry = self.polisher.fitter.model().colorimetry();
+        let goal = Metric::De2000.goal(colorimetry, Xyz(self.target));
+        let mut best = self.approach(&goal, start::edge(self.corners), glow);
+        let blend = [0, 1, 2].map(|k| mean(self.corners, |c| c.xyz[k]));
+        let blended = goal.distance(Xyz(blend));
+        // Where the blend shows the color a material should, and the blend is as near as most get.
+        let good = if blended <= EXACT { EXACT } else { blended + WORSE_THAN_BLEND };
+        let is_good = |found: &Found| found.de2000 <= good;
+        if is_good(&best) {
+            return best.node;
+        }
+        if !is_hopeless {
+            let [a, b, d] = inside(self.mean_values());
+            let edge = self.polisher.edge_of_values(&[a, b, d, 0.0, 0.0, 0.0]);
+            best = best.or(self.approach(&goal, edge, glow));
+        }
+        let heaviest = self.corners.iter().fold(0.0, |most: f64, (weight, _)| most.max(*weight));
+        for (weight, corner) in self.corners {
+            let is_worth_it = *weight == heaviest
+                || *weight > 0.0 && (blended <= EXACT || best.de2000 > blended + PLAIN_TO_SEE);
+            if is_worth_it && !is_good(&best) {
+                let glow = start::glow_of(corner, self.polisher.cube.model());
+                best = best.or(self.approach(&goal, corner.edge(), &glow));
+            }
+        }
+        let may_glow = !all(self.corners, |c| c.concentration == 0.0);
+        if may_glow
+            && blended <= EXACT
+            && !is_good(&best)
+            && let Ok(fit) = self.polisher.fitter.fit(self.rgb)
+        {
+            let node = Node::new(fit.reflectance, fit.fluorescence, fit.de2000);
+            best = best.or(Found { node, de2000: fit.de2000 });
+        }
+        best.node
+    }
+
+    /// Where one start leads.
+    fn approach(&self, goal: &Goal, edge: Edge, glow: &Glow) -> Found {
+        let polisher = self.polisher;
+        let family = glow.family;
+        let bounds = bounds(family, polisher.cube.model());
+        let x = polisher.unknowns(edge, glow, &bounds);
+        let mut best: Option<(Unknowns, f64)> = None;
+        let mut here = polisher.point_of_edge(family, x);
+        for round in 0..=ROUNDS {
+            let around = Linear::new(goal, here.color);
+            let norm = dot(&around.residual, &around.residual).sqrt();
+            let gain = best.map_or(1.0, |(_, known)| 1.0 - norm / known);
+            if gain > 0.0 {
+                best = Some((here.x, norm));
+            }
+            if round == ROUNDS || norm <= 0.5 * EXACT || gain < LEAST_GAIN {
+                break;
+            }
+            let limits =
+                Limits { norm_reached: 0.2 * EXACT, steps: ROUND_STEPS, least_gain: LEAST_GAIN };
+            here = here.descend(&around, &bounds, limits, |x| polisher.point_of_edge(family, x));
+        }
+        let (x, de2000) = best.unwrap_or((x, f64::INFINITY));
+        let [.., c, u, v] = x;
+        let fluorescence = Glow { family, numbers: [c, u, v] }.fluorescence();
+        let edge = polisher.edge_of_unknowns(&x);
+        Found { node: Node::new(edge, fluorescence, de2000), de2000 }
+    }
+
+    fn mean_values(&self) -> Vector {
+        [0, 1, 2].map(|i| mean(self.corners, |c| c.values[i]))
+    }
+}
+
+/// A material and its distance.
+#[derive(Clone, Copy, Debug)]
+struct Found {
+    node: Node,
+    de2000: f64,
+}
+
+impl Found {
+    /// The nearer of two.
+    fn or(self, other: Self) -> Self {
+        if other.de2000 < self.de2000 { other } else { self }
+    }
+}
+
+fn node(edge: Edge, fluorescence: Fluorescence, lab_distance: f64) -> Node {
+    Node::new(edge, fluorescence, DE2000_PER_LAB * lab_distance)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use upglow_color::{Lab, ciede2000};
+
+    #[test]
+    fn ciede2000_is_never_much_more_than_a_small_distance_in_lab() {
+        let mut greatest: f64 = 0.0;
+        for i in 0..200_000_u32 {
+            let turn = |share: f64| (f64::from(i) * share).fract();
+            let (hue, direction) = (turn(0.618_034) * 6.3, turn(0.754_878) * 6.3);
+            let (chroma, height) = (150.0 * turn(0.569_841).powi(2), turn(0.819_173) * 2.0 - 1.0);
+            let lab = Lab { l: 100.0 * turn(0.4143), a: chroma * hue.cos(), b: chroma * hue.sin() };
+            let flat = 0.01 * (1.0 - height * height).sqrt();
+            let moved = Lab {
+                l: lab.l + 0.01 * height,
+                a: lab.a + flat * direction.cos(),
+                b: lab.b + flat * direction.sin(),
+            };
+            greatest = greatest.max(ciede2000(lab, moved) / 0.01);
+        }
+        assert!(greatest > 1.4 && greatest < DE2000_PER_LAB, "{greatest}");
+    }
+
+    #[test]
+    fn the_slope_of_the_response_is_that_of_lab() {
+        for i in 1..300 {
+            let v = f64::from(i) * 0.01;
+            // Two of Newton's steps from a start within 4 %.
+            assert!((response_slope(v) * 3.0 * v.cbrt().powi(2) - 1.0).abs() < 1e-4, "{v}");
+        }
+        assert_eq!(response_slope(-0.1), response_slope(0.0));
+    }
+}

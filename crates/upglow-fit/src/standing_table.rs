@@ -1,0 +1,346 @@
+//! Where millions of colors stand: the answers of [`Standing`], from convexity instead of a search.
+
+mod lattice;
+mod solids;
+
+use std::sync::OnceLock;
+
+use upglow_color::{Colorimetry, Contract, LinearRgb, Metric, Xyz};
+
+use crate::Standing;
+use lattice::{Cell, Lattice};
+use solids::Solids;
+
+/// The answers of [`Standing::of`] under one contract, fast enough for every texel of a picture.
+///
+/// Both solids of colors are convex. So a box of RGB is inside a solid if its eight corners are,
+/// and outside if one plane parts them all from it; only colors in boxes that a surface passes
+/// through need a search of their own. Boxes are sized by the color's largest channel, so dark
+/// colors are told apart as finely as bright ones, and each is settled when the first color falls
+/// in it. The answers do not depend on what was asked before, or by which thread.
+#[derive(Debug)]
+pub struct StandingTable {
+    solids: Solids,
+    /// Black and white, which fill whole parts of pictures and lie on a surface.
+    known: [(LinearRgb, StandingKind); 2],
+    /// `[size][sign of blue, green, red]`.
+    lattices: Vec<OnceLock<Lattice>>,
+}
+
+/// A [`Standing`] without its distances.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum StandingKind {
+    /// Some reflectance shows the color.
+    Reflectance,
+    /// No reflectance shows it, some fluorescent material does.
+    NeedsFluorescence,
+    /// No material shows it.
+    Unreachable,
+}
+
+/// Where a color stands, and about how far it is from what it is beyond.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// Exactly the kind that [`Standing::of`] finds.
+    pub kind: StandingKind,
+    /// Distance in XYZ to the nearest color of any reflectance, or, if the color is unreachable, of
+    /// any material. Interpolated, and never less than the distance itself; 0 for a reflectance.
+    pub distance: f64,
+    /// ΔE00 to that color, interpolated; 0 for a reflectance.
+    pub de2000: f64,
+}
+
+/// The nearest color that a kind of material shows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gap {
+    /// That color; the color asked for, if it is within reach.
+    pub nearest: Xyz,
+    /// Euclidean distance to it in XYZ; 0 within reach.
+    pub distance: f64,
+    /// ΔE00 to it; 0 within reach.
+    pub de2000: f64,
+}
+
+/// How far a color is from what materials show.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gaps {
+    /// To the nearest color of any reflectance.
+    pub reflectance: Gap,
+    /// To the nearest color of any fluorescent material.
+    pub fluorescence: Gap,
+}
+
+/// Largest size of a lattice is 2⁴ = 16: brighter colors than any that is fitted
+/// ([`crate::Fitter::BRIGHTEST`]) are rare enough for a search each.
+const LARGEST_EXPONENT: i64 = 4;
+
+/// Smallest size is 2⁻¹³, less than the darkest level of 8 bits in sRGB. Smaller only helps darker
+/// colors, and larger sends dark pictures to the search.
+const SMALLEST_EXPONENT: i64 = -13;
+
+/// Signs of three channels.
+const OCTANTS: usize = 8;
+
+impl StandingTable {
+    /// A table for `contract`, by sums over 5 nm; it fills as it is asked.
+    pub fn new(contract: &Contract) -> Self {
+        let solids = Solids::new(contract);
+        let known = [0.0, 1.0].map(|v| (LinearRgb([v; 3]), solids.kind(LinearRgb([v; 3]))));
+        let sizes = usize::try_from(LARGEST_EXPONENT - SMALLEST_EXPONENT + 1)
+            .expect("the largest is not the smallest");
+        let lattices = std::iter::repeat_with(OnceLock::new).take(sizes * OCTANTS).collect();
+        Self { solids, known, lattices }
+    }
+
+    /// White, matrices and weights behind every answer.
+    pub fn colorimetry(&self) -> &Colorimetry {
+        &self.solids.colorimetry
+    }
+
+    /// Exactly what [`Standing::of`] says, by the same search.
+    pub fn standing(&self, rgb: LinearRgb) -> Standing {
+        self.solids.standing(rgb)
+    }
+
+    /// The kind of [`Standing::of`], in nanoseconds for most colors.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use upglow_color::{Contract, LinearRgb};
+    /// use upglow_fit::{StandingKind, StandingTable};
+    ///
+    /// let table = StandingTable::new(&Contract::default());
+    /// assert_eq!(table.kind(LinearRgb([0.5, 0.4, 0.3])), StandingKind::Reflectance);
+    /// assert_eq!(table.kind(LinearRgb([0.9, 0.0, 0.9])), StandingKind::NeedsFluorescence);
+    /// assert_eq!(table.kind(LinearRgb([0.0, 1.0, 0.0])), StandingKind::Unreachable);
+    /// ```
+    pub fn kind(&self, rgb: LinearRgb) -> StandingKind {
+        self.look(rgb).0
+    }
+
+    /// The kind of [`Standing::of`], and about how far the color is beyond.
+    pub fn estimate(&self, rgb: LinearRgb) -> Estimate {
+        let (kind, lattice) = self.look(rgb);
+        let [distance, de2000] = match (kind, lattice) {
+            (StandingKind::Reflectance, _) => [0.0; 2],
+            (StandingKind::NeedsFluorescence, Some(at)) => at.interpolate(rgb, |c| c.reflectance),
+            (StandingKind::Unreachable, Some(at)) => at.interpolate(rgb, |c| c.fluorescence),
+            (_, None) => self.measured(rgb, kind),
+        };
+        Estimate { kind, distance, de2000 }
+    }
+
+    /// How far `rgb` is from what reflectances and what any materials show, by search.
+    pub fn gaps(&self, rgb: LinearRgb) -> Gaps {
+        let color = self.colorimetry().xyz_from_rgb(rgb);
+        let gap = |solid: &upglow_color::ColorSolid| {
+            let nearest = solid.nearest(color);
+            self.gap(color, nearest.color, nearest.distance)
+        };
+        Gaps {
+            reflectance: gap(&self.solids.reflectance),
+            fluorescence: gap(&self.solids.fluorescence),
+        }
+    }
+
+    fn gap(&self, color: Xyz, nearest: Xyz, distance: f64) -> Gap {
+        if distance == 0.0 {
+            return Gap { nearest: color, distance, de2000: 0.0 };
+        }
+        let de2000 = Metric::De2000.distance(self.colorimetry(), color, nearest);
+        Gap { nearest, distance, de2000 }
+    }
+
+    /// Distance and ΔE00 by search.
+    fn measured(&self, rgb: LinearRgb, kind: StandingKind) -> [f64; 2] {
+        let gaps = self.gaps(rgb);
+        let beyond =
+            if kind == StandingKind::Unreachable { gaps.fluorescence } else { gaps.reflectance };
+        [beyond.distance, beyond.de2000]
+    }
+
+    /// The kind, and the lattice with the box around `rgb`, where there is one.
+    fn look(&self, rgb: LinearRgb) -> (StandingKind, Option<&Lattice>) {
+        let Some(mut lattice) = self.lattice(rgb) else {
+            return (self.solids.kind(rgb), None);
+        };
+        loop {
+            match lattice.cell(rgb, &self.solids) {
+                Cell::Settled(kind) => return (*kind, Some(lattice)),
+                Cell::Divided(parts) => lattice = parts,
+                Cell::Mixed(mixed) => {
+                    let known = self.known.iter().find(|(color, _)| *color == rgb);
+                    let kind = match known {
+                        Some((_, kind)) => *kind,
+                        None => lattice.kind_in(mixed, rgb, &self.solids),
+                    };
+                    return (kind, Some(lattice));
+                }
+            }
+        }
+    }
+
+    /// The lattice whose size fits `rgb`; `None` if none is large enough.
+    fn lattice(&self, rgb: LinearRgb) -> Option<&Lattice> {
+        let [r, g, b] = rgb.0;
+        let largest = r.abs().max(g.abs()).max(b.abs());
+        // A sum is finite only if its parts are, where none is near the largest number.
+        if !(r + g + b).is_finite() {
+            return None;
+        }
+        let exponent = exponent_above(largest).max(SMALLEST_EXPONENT);
+        let size = usize::try_from(LARGEST_EXPONENT - exponent).ok()?;
+        let octant = rgb.0.iter().rev().fold(0, |o, v| o << 1 | usize::from(v.is_sign_negative()));
+        let new = || Lattice::around_black(exponent, octant);
+        Some(self.lattices[size * OCTANTS + octant].get_or_init(new))
+    }
+}
+
+/// The least k for which `value` ≤ 2ᵏ, for a number ≥ 0; −1021 for all that are less than normal.
+fn exponent_above(value: f64) -> i64 {
+    const MANTISSA_BITS: u32 = 52;
+    const BIAS: i64 = 1023;
+    // One unit less in the last place, so that a power of two belongs to itself.
+    let below = value.to_bits().saturating_sub(1);
+    (below >> MANTISSA_BITS).cast_signed() - BIAS + 1
+}
+
+impl From<&Standing> for StandingKind {
+    fn from(standing: &Standing) -> Self {
+        match standing {
+            Standing::Reflectance => Self::Reflectance,
+            Standing::NeedsFluorescence { .. } => Self::NeedsFluorescence,
+            Standing::Unreachable { .. } => Self::Unreachable,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rayon::prelude::*;
+    use upglow_color::{Adaptation, Illuminant, RgbSpace};
+
+    fn contracts() -> [Contract; 3] {
+        let space = |name| RgbSpace::named(name).unwrap();
+        let light = |name| Illuminant::named(name).unwrap();
+        [
+            Contract::default(),
+            Contract { space: space("srgb"), illuminant: light("a"), ..Contract::default() },
+            Contract {
+                space: space("rec2020"),
+                adaptation: Adaptation::None,
+                ..Contract::default()
+            },
+        ]
+    }
+
+    /// Numbers in 0..1 that are the same in each run: the fractions of multiples of three
+    /// irrational numbers fill a cube evenly (an additive recurrence).
+    fn spread(index: u32) -> [f64; 3] {
+        const STEPS: [f64; 3] =
+            [0.819_172_513_396_164_4, 0.671_043_606_703_789_2, 0.549_700_477_901_907_1];
+        STEPS.map(|step| (f64::from(index) * step).fract())
+    }
+
+    /// Colors inside the unit cube, dark ones, bright ones and negative ones.
+    fn color(index: u32) -> LinearRgb {
+        let unit = spread(index);
+        LinearRgb(match index % 5 {
+            0 | 1 => unit,
+            2 => unit.map(|v| v * f64::exp2(-f64::from(index % 17))),
+            3 => unit.map(|v| 2.5 * v),
+            _ => unit.map(|v| 1.3 * v - 0.15),
+        })
+    }
+
+    fn assert_same_answers(contract: &Contract, count: u32) {
+        let table = StandingTable::new(contract);
+        let wrong: Vec<_> = (0..count)
+            .into_par_iter()
+            .map(color)
+            .filter(|&rgb| table.kind(rgb) != StandingKind::from(&table.standing(rgb)))
+            .collect();
+        assert!(wrong.is_empty(), "{} under {:?}: {wrong:?}", wrong.len(), contract.space);
+    }
+
+    #[test]
+    fn the_search_behind_the_table_is_that_of_one_color() {
+        for contract in contracts() {
+            let table = StandingTable::new(&contract);
+            for rgb in (0..100).map(color) {
+                assert_eq!(table.standing(rgb), Standing::of(rgb, &contract), "{rgb:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_color_stands_where_the_search_says() {
+        contracts().iter().for_each(|contract| assert_same_answers(contract, 10_000));
+    }
+
+    #[test]
+    #[ignore = "slow: half a minute; the one above asks a tenth as many"]
+    fn slow_a_hundred_thousand_colors_stand_where_the_search_says() {
+        contracts().iter().for_each(|contract| assert_same_answers(contract, 100_000));
+    }
+
+    #[test]
+    fn corners_of_the_cube_and_odd_numbers_stand_where_the_search_says() {
+        let values = [0.0, -0.0, 1.0, 0.5, 2.0, 16.0, 17.0, 1e30, -1.0, 1e-300, f64::MIN_POSITIVE];
+        let table = StandingTable::new(&Contract::default());
+        let n = values.len();
+        for index in 0..n * n * n {
+            let rgb = LinearRgb([index, index / n, index / (n * n)].map(|k| values[k % n]));
+            assert_eq!(table.kind(rgb), StandingKind::from(&table.standing(rgb)), "{rgb:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_number_is_answered_and_does_not_panic() {
+        let table = StandingTable::new(&Contract::default());
+        for odd in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX] {
+            for k in 0..3 {
+                let mut rgb = [0.5; 3];
+                rgb[k] = odd;
+                assert_eq!(table.kind(LinearRgb(rgb)), StandingKind::Unreachable, "{rgb:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn an_estimate_never_understates_the_distance_and_rarely_overstates_it_much() {
+        /// A coarse box is 1/32 wide; its surface is curved by less than this on average, in XYZ.
+        const MEAN_EXCESS: f64 = 2e-3;
+        let table = StandingTable::new(&Contract::default());
+        let (mut excess, mut count) = (0.0, 0.0);
+        for rgb in (0..5000).map(color) {
+            let estimate = table.estimate(rgb);
+            assert_eq!(estimate.kind, table.kind(rgb));
+            let gaps = table.gaps(rgb);
+            let gap = match estimate.kind {
+                StandingKind::Reflectance => 0.0,
+                StandingKind::NeedsFluorescence => gaps.reflectance.distance,
+                StandingKind::Unreachable => gaps.fluorescence.distance,
+            };
+            // Rounding of sums, and the gap at which a search stops.
+            assert!(estimate.distance >= gap - 1e-8, "{rgb:?} {estimate:?} {gap}");
+            if rgb.0.iter().all(|v| *v <= 1.0) && gap > 0.0 {
+                excess += estimate.distance - gap;
+                count += 1.0;
+            }
+        }
+        assert!(count > 100.0 && excess / count < MEAN_EXCESS, "{excess} {count}");
+    }
+
+    #[test]
+    fn within_reach_the_gap_is_nothing_and_beyond_it_is_measured() {
+        let table = StandingTable::new(&Contract::default());
+        let gray = table.gaps(LinearRgb([0.5; 3]));
+        assert_eq!((gray.reflectance.distance, gray.fluorescence.de2000), (0.0, 0.0));
+        let green = table.gaps(LinearRgb([0.0, 1.0, 0.0]));
+        assert!(green.reflectance.distance > green.fluorescence.distance);
+        assert!(green.fluorescence.de2000 > 1.0);
+    }
+}

@@ -1,0 +1,299 @@
+//! Polished textures: the promises of one material a texel.
+
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
+
+use upglow::{
+    Accounting, AnalyticModel, Cube, DyeModel, DyeOptions, DyeSet, Fluorescence, Interpolation,
+    Mixing, Model, ModelOnGrid, Node,
+};
+use upglow_color::{Colorimetry, Contract, Grid, LinearRgb, Metric};
+use upglow_fit::{FitOptions, Polisher, Unwatched, build_cube};
+
+/// What counts as a match, ΔE00: a hundredth of what an eye can tell.
+const EXACT: f64 = 0.01;
+
+fn dyes(options: DyeOptions) -> Model {
+    Model::Dyes(DyeModel::new(DyeSet::named("seed8").unwrap(), options).unwrap())
+}
+
+fn models() -> [Model; 4] {
+    let pigments = DyeOptions {
+        accounting: Accounting::Photon,
+        mixing: Mixing::Separate,
+        optical_density: Some(4.0),
+        ..DyeOptions::default()
+    };
+    [
+        Model::Reflectance,
+        dyes(DyeOptions::default()),
+        dyes(pigments),
+        Model::Analytic(AnalyticModel::default()),
+    ]
+}
+
+fn cube(model: &Model, resolution: usize) -> Cube {
+    let options = FitOptions::default();
+    build_cube(&Contract::default(), model, options, resolution, &Unwatched).unwrap()
+}
+
+/// Steele's `SplitMix64`, 0..1.
+fn random(count: usize) -> Vec<[f32; 3]> {
+    let mut state = 1_u64;
+    let mut unit = || {
+        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = state;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 40) as f32 / (1_u32 << 24) as f32
+    };
+    (0..count).map(|_| [unit(), unit(), unit()]).collect()
+}
+
+fn polished(polisher: &Polisher<'_>, rgb: &[[f32; 3]]) -> Vec<Node> {
+    let mut out = vec![Node::default(); rgb.len()];
+    assert_eq!(polisher.polish(rgb, &mut out), Ok(0));
+    out
+}
+
+/// What is known about a texel and its material.
+struct Judge<'c> {
+    cube: &'c Cube,
+    colorimetry: Colorimetry,
+    sums: ModelOnGrid,
+}
+
+impl<'c> Judge<'c> {
+    fn new(cube: &'c Cube) -> Self {
+        let colorimetry = cube.contract().on(Grid::FIT);
+        Self { cube, sums: ModelOnGrid::new(cube.model(), &colorimetry), colorimetry }
+    }
+
+    fn de2000(&self, rgb: [f32; 3], node: &Node) -> f64 {
+        let target = self.colorimetry.xyz_from_rgb(LinearRgb(rgb.map(f64::from)));
+        let color = self.sums.color(node.material(self.cube.model()));
+        Metric::De2000.distance(&self.colorimetry, target, color)
+    }
+
+    fn blend_de2000(&self, rgb: [f32; 3]) -> f64 {
+        let rgb = LinearRgb(rgb.map(f64::from));
+        let blend = self.cube.lookup(rgb, Interpolation::Blend).unwrap().color(&self.sums);
+        let target = self.colorimetry.xyz_from_rgb(rgb);
+        Metric::De2000.distance(&self.colorimetry, target, blend)
+    }
+
+    fn corners(&self, rgb: [f32; 3], holds: impl Fn(usize) -> bool) -> bool {
+        let corners = self.cube.corners(LinearRgb(rgb.map(f64::from))).unwrap();
+        corners.iter().all(|&(index, weight)| weight == 0.0 || holds(index))
+    }
+
+    fn corners_match(&self, rgb: [f32; 3]) -> bool {
+        self.corners(rgb, |index| f64::from(self.cube.nodes()[index].de2000) <= EXACT)
+    }
+}
+
+/// How well texels are shown.
+#[derive(Debug, Default)]
+struct Tally {
+    exact: usize,
+    corners_exact: usize,
+    lost: usize,
+    far: usize,
+    mean: f64,
+    blend_mean: f64,
+    greatest: f64,
+}
+
+fn tally(judge: &Judge<'_>, rgb: &[[f32; 3]], nodes: &[Node]) -> Tally {
+    let mut tally = Tally::default();
+    for (&rgb, node) in rgb.iter().zip(nodes) {
+        let (de2000, blend) = (judge.de2000(rgb, node), judge.blend_de2000(rgb));
+        let corners_exact = judge.corners_match(rgb);
+        tally.exact += usize::from(de2000 <= EXACT);
+        tally.corners_exact += usize::from(corners_exact);
+        tally.lost += usize::from(corners_exact && de2000 > EXACT);
+        tally.far += usize::from(de2000 > blend + 0.5);
+        tally.mean += de2000 / nodes.len() as f64;
+        tally.blend_mean += blend / nodes.len() as f64;
+        tally.greatest = tally.greatest.max(de2000 - blend);
+    }
+    tally
+}
+
+#[test]
+fn where_the_corners_match_the_material_matches() {
+    for model in models() {
+        let cube = cube(&model, 10);
+        let judge = Judge::new(&cube);
+        let rgb = random(3000);
+        let nodes = polished(&Polisher::new(&cube).unwrap(), &rgb);
+        let tally = tally(&judge, &rgb, &nodes);
+        println!("{}: {tally:?}", model.name());
+        assert!(tally.corners_exact > 400);
+        assert_eq!(tally.lost, 0, "{}", model.name());
+    }
+}
+
+#[test]
+fn a_miss_is_hardly_ever_much_greater_than_the_blends() {
+    for model in models() {
+        let cube = cube(&model, 10);
+        let rgb = random(3000);
+        let nodes = polished(&Polisher::new(&cube).unwrap(), &rgb);
+        let tally = tally(&Judge::new(&cube), &rgb, &nodes);
+        assert!(tally.mean < tally.blend_mean, "{tally:?}");
+        // Four reflectances in one cell show saturated colors that no single one does.
+        let most = if model == Model::Reflectance { 120 } else { 40 };
+        assert!(tally.far < most, "{tally:?}");
+        assert!(tally.exact > tally.corners_exact, "{tally:?}");
+    }
+}
+
+#[test]
+fn every_material_keeps_the_limit_and_is_one_of_the_model() {
+    for model in models() {
+        let cube = cube(&model, 6);
+        let polisher = Polisher::new(&cube).unwrap();
+        let judge = Judge::new(&cube);
+        let limit = cube.fit().slope_max_per_nm.unwrap();
+        let rgb = random(512);
+        let mut fast = vec![Node::default(); rgb.len()];
+        assert_eq!(polisher.interpolate(&rgb, &mut fast), Ok(0));
+        for nodes in [polished(&polisher, &rgb), fast] {
+            for (&rgb, node) in rgb.iter().zip(&nodes) {
+                assert!(node.edge().to_sigmoid().steepest_slope_per_nm() <= limit, "{node:?}");
+                let is_passive = node.material(&model).fluorescence == Fluorescence::None;
+                let corner_glows = |i| cube.node_material(i).fluorescence != Fluorescence::None;
+                assert!(is_passive || !judge.corners(rgb, |i| !corner_glows(i)), "{rgb:?}");
+            }
+            let measured = |node: &Node| Node { de2000: 0.0, ..*node };
+            let nodes = nodes.iter().map(measured).collect();
+            let (contract, fit) = (cube.contract().clone(), cube.fit().clone());
+            assert!(Cube::new(contract, model.clone(), fit, 8, nodes).is_ok());
+        }
+    }
+}
+
+#[test]
+fn the_difference_told_is_that_of_the_material_or_a_bound() {
+    // Single precision of colors, times the slope of Lab in the dark, and of what is stored.
+    const SINGLE: f64 = 2e-3;
+    for model in models() {
+        let cube = cube(&model, 8);
+        let judge = Judge::new(&cube);
+        let rgb = random(2000);
+        for (&rgb, node) in rgb.iter().zip(polished(&Polisher::new(&cube).unwrap(), &rgb)) {
+            let (told, found) = (f64::from(node.de2000), judge.de2000(rgb, &node));
+            assert!(found <= told + SINGLE, "{rgb:?} {found} {node:?}");
+            assert!(told <= EXACT || told <= found + SINGLE, "{rgb:?} {found} {node:?}");
+        }
+    }
+}
+
+#[test]
+fn grays_are_flat_and_do_not_fluoresce() {
+    let cube = cube(&dyes(DyeOptions::default()), 7);
+    let polisher = Polisher::new(&cube).unwrap();
+    let grays: Vec<[f32; 3]> = (0..=100_u8).map(|i| [f32::from(i) / 100.0; 3]).collect();
+    let mut fast = vec![Node::default(); grays.len()];
+    assert_eq!(polisher.interpolate(&grays, &mut fast), Ok(0));
+    for nodes in [polished(&polisher, &grays), fast] {
+        for ([value, ..], node) in grays.iter().zip(nodes) {
+            let material = node.material(cube.model());
+            assert_eq!(material.fluorescence, Fluorescence::None);
+            assert_eq!(node.edge().slope_per_nm, 0.0);
+            // Single precision of the level, which is near 1e4 in the dark.
+            assert!((material.reflectance.at(550.0) - f64::from(*value)).abs() < 1e-6);
+        }
+    }
+}
+
+#[test]
+fn neighbors_end_as_neighbors() {
+    let cube = cube(&dyes(DyeOptions::default()), 10);
+    let polisher = Polisher::new(&cube).unwrap();
+    // From a soft green to a saturated magenta, which fluoresces.
+    let at = |share: f32| [0.1 + 0.75 * share, 0.4 - 0.35 * share, 0.1 + 0.75 * share];
+    let rgb: Vec<[f32; 3]> = (0..=4000_u16).map(|i| at(f32::from(i) / 4000.0)).collect();
+    let nodes = polished(&polisher, &rgb);
+    let leaps = nodes.windows(2).filter(|pair| {
+        let [a, b] = [&pair[0], &pair[1]].map(|node| node.material(cube.model()));
+        let change = |nm: f64| (a.reflectance.at(nm) - b.reflectance.at(nm)).abs();
+        let glow = a.fluorescence.concentration() - b.fluorescence.concentration();
+        // A step of the line is 2e-4 in RGB; a leap is a hundred times that.
+        [450.0, 500.0, 550.0, 600.0, 650.0].into_iter().any(|nm| change(nm) > 0.02)
+            || glow.abs() > 0.02
+    });
+    let leaps = leaps.count();
+    println!("{leaps} leaps");
+    // The line crosses some twenty cells, and dyes change a few times.
+    assert!(leaps <= 10, "{leaps}");
+}
+
+#[test]
+fn batches_change_nothing() {
+    for model in models() {
+        let cube = cube(&model, 6);
+        let polisher = Polisher::new(&cube).unwrap();
+        let rgb = random(300);
+        let whole = polished(&polisher, &rgb);
+        for size in [1, 7, 64] {
+            let parts: Vec<Node> =
+                rgb.chunks(size).flat_map(|part| polished(&polisher, part)).collect();
+            assert_eq!(parts, whole);
+        }
+    }
+}
+
+#[test]
+fn what_is_outside_has_no_material_and_is_counted() {
+    let cube = cube(&Model::Reflectance, 3);
+    let polisher = Polisher::new(&cube).unwrap();
+    let rgb = [
+        [0.5, 0.4, 0.3],
+        [f32::NAN, 0.5, 0.5],
+        [-1e-9, 0.5, 0.5],
+        [0.5, 1.0 + f32::EPSILON, 0.5],
+        [0.5, 0.5, f32::INFINITY],
+        [1.0, 1.0, 0.0],
+    ];
+    let is_nowhere = |node: &Node| node.reflectance.iter().all(|v| v.is_nan());
+    let mut out = [Node::default(); 6];
+    let mut fast = out;
+    assert_eq!(polisher.polish(&rgb, &mut out), Ok(4));
+    assert_eq!(polisher.interpolate(&rgb, &mut fast), Ok(4));
+    for nodes in [out, fast] {
+        assert_eq!(nodes.map(|node| is_nowhere(&node)), [false, true, true, true, true, false]);
+    }
+    assert!(out[0].de2000 < 1.0 && out[1].de2000.is_nan());
+    assert_eq!(
+        polisher.polish(&rgb, &mut out[1..]).unwrap_err().to_string(),
+        "room for 5 colors, expected 6, one for each RGB"
+    );
+}
+
+#[test]
+fn a_cube_without_a_limit_is_polished_too() {
+    let options = FitOptions { slope_max_per_nm: None, ..FitOptions::default() };
+    let (contract, model) = (Contract::default(), dyes(DyeOptions::default()));
+    let cube = build_cube(&contract, &model, options, 8, &Unwatched).unwrap();
+    let rgb = random(2000);
+    let nodes = polished(&Polisher::new(&cube).unwrap(), &rgb);
+    let tally = tally(&Judge::new(&cube), &rgb, &nodes);
+    println!("{tally:?}");
+    assert!(tally.lost <= 20 && tally.mean < tally.blend_mean, "{tally:?}");
+}
+
+/// What 20,000 random colors of the default cube showed, with room for another sequence.
+#[test]
+#[ignore = "slow"]
+fn slow_the_default_cube_is_polished_as_well_as_it_is_fitted() {
+    for (model, exact) in models().into_iter().zip([0.36, 0.77, 0.86, 0.80]) {
+        let cube = cube(&model, 32);
+        let rgb = random(20_000);
+        let nodes = polished(&Polisher::new(&cube).unwrap(), &rgb);
+        let tally = tally(&Judge::new(&cube), &rgb, &nodes);
+        println!("{}: {tally:?}", model.name());
+        assert_eq!(tally.lost, 0, "{}", model.name());
+        assert!(tally.exact as f64 > exact * 20_000.0 && tally.mean < tally.blend_mean);
+    }
+}
