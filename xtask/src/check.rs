@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 use std::time::Instant;
 
+use crate::python::{self, Python};
 use crate::{layers, readme, tables};
 
 /// Set for the tests under `--slow`, so that they may take larger samples.
@@ -78,12 +79,13 @@ impl std::error::Error for StepError {
 
 type Step = fn(&Path) -> Result<Outcome, StepError>;
 
-const STEPS: [(&str, Step); 8] = [
+const STEPS: [(&str, Step); 9] = [
     ("format", format),
     ("generated files", generated_files),
     ("layers", layers),
     ("clippy", clippy),
     ("docs", docs),
+    ("Python for tests", python_for_tests),
     ("tests", quick_tests),
     ("README examples", readme_examples),
     ("licenses", licenses),
@@ -163,14 +165,35 @@ fn docs(root: &Path) -> Result<Outcome, StepError> {
     finish(command)
 }
 
+/// Tests that need it skip themselves, by name, where there is none.
+fn python_for_tests(root: &Path) -> Result<Outcome, StepError> {
+    Ok(match prepared_python(root)? {
+        Python::Ready(_) => Outcome::Passed,
+        Python::Missing(reason) => Outcome::Skipped(reason),
+    })
+}
+
+fn prepared_python(root: &Path) -> Result<Python, StepError> {
+    let path = root.join("target/python");
+    python::prepare(root).map_err(|source| StepError::File { path, source })
+}
+
 fn quick_tests(root: &Path) -> Result<Outcome, StepError> {
-    finish_aloud(cargo(root, "test --workspace"))
+    finish_aloud(tests(root, "test --workspace")?)
 }
 
 fn slow_tests(root: &Path) -> Result<Outcome, StepError> {
-    let mut command = cargo(root, "test --workspace -- --ignored slow_");
+    let mut command = tests(root, "test --workspace -- --ignored slow_")?;
     command.env(SLOW_VARIABLE, "1");
     finish_aloud(command)
+}
+
+fn tests(root: &Path, args: &str) -> Result<Command, StepError> {
+    let mut command = cargo(root, args);
+    if let Python::Ready(interpreter) = prepared_python(root)? {
+        command.env(python::VARIABLE, interpreter);
+    }
+    Ok(command)
 }
 
 fn readme_examples(root: &Path) -> Result<Outcome, StepError> {

@@ -9,6 +9,7 @@ use std::process::ExitCode;
 mod bench;
 mod check;
 mod layers;
+mod python;
 mod readme;
 mod tables;
 

@@ -94,6 +94,18 @@ pub enum CubeError {
     },
 }
 
+/// Why a node's numbers describe no material.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("{what} is {found}, expected {expected}")]
+pub struct NodeError {
+    /// Which number.
+    pub what: &'static str,
+    /// The number found.
+    pub found: f32,
+    /// What it should be.
+    pub expected: &'static str,
+}
+
 impl Cube {
     /// Smallest and greatest number of nodes along an axis.
     pub const RESOLUTIONS: [usize; 2] = [2, 256];
@@ -120,7 +132,7 @@ impl Cube {
         }
         let cube = Self { contract, model, fit, resolution, nodes };
         for (index, node) in cube.nodes.iter().enumerate() {
-            if let Some((what, found, expected)) = node.fault(&cube.model) {
+            if let Err(NodeError { what, found, expected }) = node.check(&cube.model) {
                 let node = cube.coordinates(index);
                 return Err(CubeError::Node { node, what, found, expected });
             }
@@ -251,22 +263,29 @@ impl Node {
         Material { reflectance: self.edge().to_sigmoid(), fluorescence }
     }
 
-    /// The first number that is out of range: its name, itself, and the range.
-    fn fault(&self, model: &Model) -> Option<(&'static str, f32, &'static str)> {
+    /// Checks that its numbers describe a material of a model.
+    ///
+    /// # Errors
+    ///
+    /// [`NodeError`] names the first number that does not.
+    pub fn check(&self, model: &Model) -> Result<(), NodeError> {
+        let fault = |what, found, expected| Err(NodeError { what, found, expected });
+        let fraction = |what, found: f32| match found {
+            0.0..=1.0 => Ok(()),
+            _ => fault(what, found, "0 to 1"),
+        };
         let numbers = self.reflectance.iter().chain(&self.fluorescence).chain([&self.de2000]);
         if let Some(&found) = numbers.into_iter().find(|v| !v.is_finite()) {
-            return Some(("a number", found, "a finite one"));
+            return fault("a number", found, "a finite one");
         }
-        let fraction =
-            |what, found: f32| (!(0.0..=1.0).contains(&found)).then_some((what, found, "0 to 1"));
         let [first, second, third] = self.fluorescence;
         match model {
-            Model::Reflectance => None,
+            Model::Reflectance => Ok(()),
             Model::Dyes(model) if usize::from(self.dye) >= model.curves().len() => {
-                Some(("the dye", self.dye.into(), "a dye of the ring"))
+                fault("the dye", self.dye.into(), "a dye of the ring")
             }
             Model::Dyes(_) => {
-                fraction("the weight", first).or_else(|| fraction("the concentration", second))
+                fraction("the weight", first).and_then(|()| fraction("the concentration", second))
             }
             Model::Analytic(_) => fraction("the concentration", third),
         }

@@ -60,7 +60,7 @@ mod sigmoid;
 pub use batch::{ColorTable, LengthError};
 pub use blend::Blend;
 pub use coefficient_table::{CoefficientTable, CoefficientTableError, Integrator};
-pub use cube::{Cube, CubeError, FitRecord, LookupError, Node};
+pub use cube::{Cube, CubeError, FitRecord, LookupError, Node, NodeError};
 pub use cube_file::{ReadCubeError, WriteCubeError, write_whole};
 pub use dye::{DyeSet, DyeSetError};
 pub use edge::Edge;

@@ -1,0 +1,318 @@
+//! Turns pictures into spectral files.
+
+pub(crate) mod attributes;
+mod compact;
+pub(crate) mod material;
+mod radiance;
+mod spectral;
+
+use std::fmt::Debug;
+use std::path::Path;
+
+use rayon::prelude::*;
+use upglow::{Cube, LookupError, Model};
+use upglow_color::{Grid, Illuminant};
+use upglow_fit::{FitOptionsError, Progress, StandingTable, Watch};
+
+use self::compact::CompactMaker;
+use self::material::MaterialMaker;
+use self::radiance::RadianceMaker;
+use self::spectral::SpectralMaker;
+use crate::{
+    Alpha, Assumed, Attributes, Band, CompactError, Compression, ExrDescription, ExrWriter,
+    LinearPicture, LinearPictureError, Picture, PictureError, Repair, Sample, WriteExrError,
+    greatest_value,
+};
+
+/// What becomes of each texel.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Form {
+    /// The parameters of one material.
+    Material(MaterialWay),
+    /// Reflectance in bands, and re-radiation between them.
+    Spectral {
+        /// The wavelengths at the middle of the bands.
+        grid: Grid,
+        /// Maps of the dyes instead of a channel for each pair of bands.
+        compact: bool,
+    },
+    /// Color under a light, in the cube's RGB space.
+    Radiance {
+        /// The light; it brings as much power as the contract's.
+        light: Illuminant,
+    },
+}
+
+/// How one material is made of the four around a color.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MaterialWay {
+    /// Moved until it shows the color, where one material can.
+    Polished,
+    /// Parameters interpolated, no more.
+    Interpolated,
+}
+
+/// How pictures are read and files are written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BakeOptions {
+    /// What is taken for granted of pictures that do not say it.
+    pub assumed: Assumed,
+    /// What to do with texels outside the cube; `None` refuses them.
+    pub repair: Option<Repair>,
+    /// Half or float.
+    pub sample: Sample,
+}
+
+/// What was baked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Baked {
+    /// Width and height of the picture.
+    pub size: [usize; 2],
+    /// Channels of the file.
+    pub channels: usize,
+    /// Texels that were repaired.
+    pub repaired: u64,
+    /// Bytes of the file.
+    pub bytes: u64,
+}
+
+/// Why a picture was not baked.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum BakeError {
+    /// The picture cannot be read, or nobody says what its numbers mean.
+    #[error(transparent)]
+    Picture(#[from] LinearPictureError),
+    /// The picture is damaged further down.
+    #[error(transparent)]
+    Rows(#[from] PictureError),
+    /// The cube records a slope limit that no fit can keep.
+    #[error(transparent)]
+    Options(#[from] FitOptionsError),
+    /// The cube's model has no compact form.
+    #[error("a cube with the model {found}, expected dyes for the compact form")]
+    NoDyes {
+        /// Name of the model.
+        found: &'static str,
+    },
+    /// The cube's dyes have no compact form.
+    #[error(transparent)]
+    Compact(#[from] CompactError),
+    /// A texel has no material.
+    #[error("texel {x},{y}: {source}{}", and_others(*.others))]
+    Texel {
+        /// Column, from 0 at the left.
+        x: usize,
+        /// Row, from 0 at the top.
+        y: usize,
+        /// What is wrong with it.
+        source: LookupError,
+        /// How many more are outside in the same rows.
+        others: usize,
+    },
+    /// The file cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteExrError),
+    /// The watcher stopped the work.
+    #[error("stopped")]
+    Stopped,
+}
+
+fn and_others(count: usize) -> String {
+    match count {
+        0 => String::new(),
+        count => format!("; so are {count} more in the same rows"),
+    }
+}
+
+/// Makes the channels of one form from linear RGB in the cube's space, each component in 0..=1.
+trait Maker: Debug + Sync {
+    /// Names, in the order in which planes are filled.
+    fn channels(&self) -> Vec<String>;
+
+    /// What the file says besides.
+    fn attributes(&self) -> Attributes;
+
+    fn compression(&self) -> Compression;
+
+    /// Whether the channels are light, which alpha dims, and not properties of a material.
+    fn is_light(&self) -> bool {
+        false
+    }
+
+    /// Fills one row of each channel, `[channel][texel]`.
+    fn fill(&self, rgb: &[[f32; 3]], planes: &mut [&mut [f32]]);
+}
+
+/// Bakes pictures with one cube into one form.
+#[derive(Debug)]
+pub struct Baker<'c> {
+    cube: &'c Cube,
+    options: BakeOptions,
+    maker: Box<dyn Maker + 'c>,
+}
+
+/// Memory for the channels of a band, bytes: wide pictures of many channels are cut into fewer
+/// rows. More would fill a small machine, less would leave cores waiting at the end of each band.
+const BAND_BYTES: usize = 96 << 20;
+/// Rows of a band at most: enough to keep every core busy.
+const BAND_ROWS: usize = 64;
+
+impl<'c> Baker<'c> {
+    /// Prepares a form.
+    ///
+    /// # Errors
+    ///
+    /// [`BakeError`] if the cube has no such form.
+    pub fn new(cube: &'c Cube, form: Form, options: BakeOptions) -> Result<Self, BakeError> {
+        let maker: Box<dyn Maker + 'c> = match (form, cube.model()) {
+            (Form::Material(way), _) => Box::new(MaterialMaker::new(cube, way)?),
+            (Form::Spectral { grid, compact: false }, _) => {
+                Box::new(SpectralMaker::new(cube, grid))
+            }
+            (Form::Spectral { grid, .. }, Model::Dyes(dyes)) => {
+                Box::new(CompactMaker::new(cube, dyes, grid)?)
+            }
+            (Form::Spectral { .. }, model) => {
+                return Err(BakeError::NoDyes { found: model.name() });
+            }
+            (Form::Radiance { light }, _) => Box::new(RadianceMaker::new(cube, light)),
+        };
+        Ok(Self { cube, options, maker })
+    }
+
+    /// Bakes the picture at `input` into a file at `output`, on all threads of the current rayon
+    /// pool. The file appears whole or not at all, and its bytes do not depend on the threads.
+    ///
+    /// Memory: two bands of at most 96 MiB besides what [`Picture`] takes, and one block of 16
+    /// rows; a spectral file has blocks of one row.
+    ///
+    /// # Errors
+    ///
+    /// [`BakeError`]; `output` is then as it was.
+    pub fn bake(&self, input: &Path, output: &Path, watch: &dyn Watch) -> Result<Baked, BakeError> {
+        let contract = self.cube.contract();
+        let mut picture = LinearPicture::open(input, &self.options.assumed)?;
+        let conversion = picture.conversion_to(contract);
+        let size = picture.picture().size();
+        let mending = self.mending(input, watch)?;
+        let mut writer = ExrWriter::create(output, self.description(picture.picture()))?;
+        let mut baked = Baked { size, channels: 0, repaired: 0, bytes: 0 };
+        while let Some(mut band) = picture.read_band(self.band_rows(size[0]))? {
+            if watch.stopped() {
+                return Err(BakeError::Stopped);
+            }
+            if let Some(conversion) = conversion {
+                conversion.apply(&mut band.rgb);
+            }
+            baked.repaired += mending.mend(&mut band)?;
+            let planes = self.planes(&band, picture.picture().alpha());
+            baked.channels = planes.len();
+            writer.write_band(&planes.iter().map(Vec::as_slice).collect::<Vec<_>>())?;
+            let done = band.first_row + band.rows();
+            watch.progress(Progress { stage: "baking", done, total: size[1] });
+        }
+        baked.bytes = writer.finish()?;
+        Ok(baked)
+    }
+
+    /// What is done with texels outside the cube; one way must read the whole picture first.
+    fn mending(&self, input: &Path, watch: &dyn Watch) -> Result<Mending, BakeError> {
+        let Some(repair) = self.options.repair else { return Ok(Mending::Refuse) };
+        let mut greatest = 0.0_f32;
+        if repair.reads_all_first() {
+            let mut picture = LinearPicture::open(input, &self.options.assumed)?;
+            let conversion = picture.conversion_to(self.cube.contract());
+            let [_, total] = picture.picture().size();
+            while let Some(mut band) = picture.read_band(BAND_ROWS)? {
+                if watch.stopped() {
+                    return Err(BakeError::Stopped);
+                }
+                if let Some(conversion) = conversion {
+                    conversion.apply(&mut band.rgb);
+                }
+                greatest = greatest.max(greatest_value(&band.rgb));
+                let done = band.first_row + band.rows();
+                watch.progress(Progress { stage: "measuring", done, total });
+            }
+        }
+        let table = StandingTable::new(self.cube.contract());
+        Ok(Mending::Repair { repair, greatest, table: Box::new(table) })
+    }
+
+    /// The channels of a band, alpha last.
+    fn planes(&self, band: &Band, alpha: Option<Alpha>) -> Vec<Vec<f32>> {
+        let count = self.maker.channels().len();
+        let rows: Vec<Vec<f32>> = band
+            .rgb
+            .par_chunks(band.width)
+            .map(|rgb| {
+                let mut values = vec![0.0; count * rgb.len()];
+                let mut planes: Vec<&mut [f32]> = values.chunks_mut(rgb.len()).collect();
+                self.maker.fill(rgb, &mut planes);
+                values
+            })
+            .collect();
+        let of_channel = |channel: usize| {
+            let range = channel * band.width..(channel + 1) * band.width;
+            rows.iter().flat_map(|row| &row[range.clone()]).copied().collect()
+        };
+        let mut planes: Vec<Vec<f32>> = (0..count).into_par_iter().map(of_channel).collect();
+        if let Some(values) = &band.alpha {
+            if self.maker.is_light() && alpha == Some(Alpha::Associated) {
+                let associate = |plane: &mut Vec<f32>| {
+                    plane.iter_mut().zip(values).for_each(|(v, a)| *v *= a);
+                };
+                planes.iter_mut().for_each(associate);
+            }
+            planes.push(values.clone());
+        }
+        planes
+    }
+
+    fn description(&self, picture: &Picture) -> ExrDescription {
+        let alpha = picture.has_alpha().then(|| "A".to_owned());
+        let channels = self.maker.channels().into_iter().chain(alpha);
+        let mut description = ExrDescription::new(picture.size(), channels);
+        description.sample = self.options.sample;
+        description.compression = self.maker.compression();
+        description.attributes = self.maker.attributes();
+        description.windows = picture.windows();
+        description
+    }
+
+    fn band_rows(&self, width: usize) -> usize {
+        let row_bytes = size_of::<f32>() * width * self.maker.channels().len();
+        (BAND_BYTES / row_bytes.max(1)).clamp(1, BAND_ROWS)
+    }
+}
+
+/// What is done with texels outside the cube.
+enum Mending {
+    Refuse,
+    Repair { repair: Repair, greatest: f32, table: Box<StandingTable> },
+}
+
+impl Mending {
+    /// Leaves only colors of the cube; how many texels it changed.
+    fn mend(&self, band: &mut Band) -> Result<u64, BakeError> {
+        match self {
+            Self::Refuse => refuse_outside(band).map(|()| 0),
+            Self::Repair { repair, greatest, table } => {
+                Ok(repair.of(*greatest, table).repair(&mut band.rgb).changed)
+            }
+        }
+    }
+}
+
+fn refuse_outside(band: &Band) -> Result<(), BakeError> {
+    let is_outside = |rgb: &[f32; 3]| !rgb.iter().all(|v| (0.0..=1.0).contains(v));
+    let Some(first) = band.rgb.par_iter().position_first(is_outside) else { return Ok(()) };
+    let others = band.rgb[first + 1..].par_iter().filter(|rgb| is_outside(rgb)).count();
+    let named = ["red", "green", "blue"].into_iter().zip(band.rgb[first]);
+    let (channel, value) =
+        named.into_iter().find(|(_, v)| !(0.0..=1.0).contains(v)).expect("the texel is outside");
+    let source = LookupError::Outside { channel, value: value.into() };
+    let (x, y) = (first % band.width, band.first_row + first / band.width);
+    Err(BakeError::Texel { x, y, source, others })
+}

@@ -1,0 +1,92 @@
+//! Reflectance in bands and maps of the dyes: the compact bispectral form.
+
+use upglow::{Cube, DyeModel, Interpolation, Mixing, Mixture, Node};
+use upglow_color::{Grid, LinearRgb};
+use upglow_fit::Polisher;
+
+use super::radiance::RadianceMaker;
+use super::spectral::PREVIEW;
+use super::{BakeError, Maker, attributes};
+use crate::{
+    Attribute, Attributes, CompactForm, CompactLayout, Compression, LAYOUT_VERSION,
+    LAYOUT_VERSION_VALUE, MOST_EXTRA_CHANNELS,
+};
+
+/// The channels of [`CompactLayout`] beside a preview.
+#[derive(Debug)]
+pub(super) struct CompactMaker<'c> {
+    cube: &'c Cube,
+    layout: CompactLayout,
+    preview: RadianceMaker<'c>,
+    /// Pooled dyes have one map each only where a texel has one material.
+    polisher: Option<Polisher<'c>>,
+}
+
+/// What the channels hold.
+const CHANNELS: &str = "compact bispectral form, as docs/spectral-exr.md of upglow describes: \
+                        T.<wavelength>: share of the light at a wavelength that leaves in the same \
+                        band; the other maps: how much of which dye moves light to other bands; \
+                        R, G, B: linear color under the contract's light";
+
+impl<'c> CompactMaker<'c> {
+    pub(super) fn new(cube: &'c Cube, dyes: &DyeModel, grid: Grid) -> Result<Self, BakeError> {
+        let fits = dyes.curves().len() <= MOST_EXTRA_CHANNELS;
+        let form = if fits { CompactForm::PerDye } else { CompactForm::PerLobe };
+        let pooled = dyes.options().mixing == Mixing::Pooled;
+        let polisher = (fits && pooled).then(|| Polisher::new(cube)).transpose()?;
+        Ok(Self {
+            cube,
+            layout: CompactLayout::new(dyes, grid, form)?,
+            preview: RadianceMaker::new(cube, cube.contract().illuminant.clone()),
+            polisher,
+        })
+    }
+
+    /// What is stored of each texel, in its order.
+    fn for_each_mixture(&self, rgb: &[[f32; 3]], mut store: impl FnMut(&Mixture<'_>)) {
+        let Some(polisher) = &self.polisher else {
+            for rgb in rgb {
+                let color = LinearRgb(rgb.map(f64::from));
+                let mixture = self.cube.lookup(color, Interpolation::Blend);
+                store(&mixture.expect("texels outside were repaired or refused"));
+            }
+            return;
+        };
+        let mut nodes = vec![Node::default(); rgb.len()];
+        polisher.polish(rgb, &mut nodes).expect("as many materials as texels");
+        for node in nodes {
+            store(&Mixture::of(self.cube.model(), node.material(self.cube.model())));
+        }
+    }
+}
+
+impl Maker for CompactMaker<'_> {
+    fn channels(&self) -> Vec<String> {
+        let preview = PREVIEW.map(str::to_owned).into_iter();
+        preview.chain(self.layout.channel_names()).collect()
+    }
+
+    fn attributes(&self) -> Attributes {
+        let mut attributes = attributes::common(self.cube, "spectral", CHANNELS);
+        attributes.insert(LAYOUT_VERSION.into(), Attribute::Text(LAYOUT_VERSION_VALUE.into()));
+        attributes.extend(self.layout.attributes());
+        attributes
+    }
+
+    fn compression(&self) -> Compression {
+        Compression::Zips
+    }
+
+    fn fill(&self, rgb: &[[f32; 3]], planes: &mut [&mut [f32]]) {
+        let (preview, stored) = planes.split_at_mut(PREVIEW.len());
+        self.preview.fill_rgb(rgb, preview);
+        let mut texel = 0;
+        self.for_each_mixture(rgb, |mixture| {
+            let values = self.layout.encode(mixture).expect("the form was chosen for the model");
+            for (plane, value) in stored.iter_mut().zip(values) {
+                plane[texel] = value;
+            }
+            texel += 1;
+        });
+    }
+}

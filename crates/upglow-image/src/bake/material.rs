@@ -1,0 +1,157 @@
+//! The parameters of one material a texel.
+
+use half::f16;
+use upglow::{Cube, Model, Node};
+use upglow_fit::{FitOptionsError, Polisher};
+
+use super::{Maker, MaterialWay, attributes};
+use crate::{Attribute, Attributes, Compression};
+
+/// Three numbers of the reflectance and, where the model fluoresces, three of that.
+#[derive(Debug)]
+pub(super) struct MaterialMaker<'c> {
+    cube: &'c Cube,
+    polisher: Polisher<'c>,
+    way: MaterialWay,
+}
+
+/// Wavelengths are stored from here on: half precision keeps an eighth of a nanometer within 256 nm
+/// of zero, and only half a nanometer at 600.
+pub(crate) const ORIGIN_NM: f32 = 550.0;
+
+/// Steepest point of the reflectance: its wavelength, level and slope; see [`upglow::Edge`].
+pub(crate) const REFLECTANCE: [&str; 3] =
+    ["reflectance.edge_from_550nm", "reflectance.level", "reflectance.slope_per_nm"];
+/// Number of the first dye, share of its neighbor, concentration.
+pub(crate) const DYES: [&str; 3] =
+    ["fluorescence.dye", "fluorescence.weight", "fluorescence.concentration"];
+/// Peak of the emission, Stokes shift, concentration.
+pub(crate) const BELLS: [&str; 3] = [
+    "fluorescence.emission_peak_from_550nm",
+    "fluorescence.stokes_shift_nm",
+    "fluorescence.concentration",
+];
+
+/// What the channels hold.
+const CHANNELS: &str = "one material a texel, as docs/material-exr.md of upglow describes: \
+                        reflectance by its steepest point, and the fluorescence of upglow.model; \
+                        neighbors must not be averaged";
+
+impl<'c> MaterialMaker<'c> {
+    /// # Errors
+    ///
+    /// [`FitOptionsError`] if the cube records a slope limit that no fit can keep.
+    pub(super) fn new(cube: &'c Cube, way: MaterialWay) -> Result<Self, FitOptionsError> {
+        Ok(Self { cube, polisher: Polisher::new(cube)?, way })
+    }
+}
+
+impl Maker for MaterialMaker<'_> {
+    fn channels(&self) -> Vec<String> {
+        let fluorescence = match self.cube.model() {
+            Model::Reflectance => None,
+            Model::Dyes(_) => Some(DYES),
+            Model::Analytic(_) => Some(BELLS),
+        };
+        let names = REFLECTANCE.into_iter().chain(fluorescence.into_iter().flatten());
+        names.map(str::to_owned).collect()
+    }
+
+    fn attributes(&self) -> Attributes {
+        let mut attributes = attributes::common(self.cube, "material", CHANNELS);
+        attributes.insert(attributes::MODEL.into(), attributes::model(self.cube));
+        let way = match self.way {
+            MaterialWay::Polished => "polished",
+            MaterialWay::Interpolated => "interpolated",
+        };
+        attributes.insert("upglow.way".into(), Attribute::Text(way.into()));
+        attributes
+    }
+
+    fn compression(&self) -> Compression {
+        Compression::Zip
+    }
+
+    fn fill(&self, rgb: &[[f32; 3]], planes: &mut [&mut [f32]]) {
+        let mut nodes = vec![Node::default(); rgb.len()];
+        let made = match self.way {
+            MaterialWay::Polished => self.polisher.polish(rgb, &mut nodes),
+            MaterialWay::Interpolated => self.polisher.interpolate(rgb, &mut nodes),
+        };
+        made.expect("as many materials as texels");
+        let dyes = matches!(self.cube.model(), Model::Dyes(_));
+        for (texel, node) in nodes.iter().enumerate() {
+            for (plane, value) in planes.iter_mut().zip(stored(node, dyes)) {
+                plane[texel] = value;
+            }
+        }
+    }
+}
+
+/// A node's numbers in the order of the channels.
+fn stored(node: &Node, dyes: bool) -> [f32; 6] {
+    let [edge_nm, level, slope_per_nm] = node.reflectance;
+    let [first, second, third] = node.fluorescence;
+    // What is infinite in half precision is white or black long before.
+    let level = level.clamp(-f16::MAX.to_f32(), f16::MAX.to_f32());
+    let slope_per_nm = towards_zero(slope_per_nm);
+    let fluorescence = match (dyes, first + second + third > 0.0) {
+        (_, false) => [0.0; 3],
+        (true, true) => [f32::from(node.dye), first, second],
+        (false, true) => [first - ORIGIN_NM, second, third],
+    };
+    let [a, b, c] = fluorescence;
+    [edge_nm - ORIGIN_NM, level, slope_per_nm, a, b, c]
+}
+
+/// The nearest half-precision number that is not greater in size: rounding may not lift a slope
+/// above its limit. Files in single precision hold the same number.
+fn towards_zero(value: f32) -> f32 {
+    let nearest = f16::from_f32(value);
+    let size = nearest.to_f32().abs();
+    if size <= value.abs() {
+        return nearest.to_f32();
+    }
+    // The bits of a half are in the order of its size.
+    f16::from_bits(nearest.to_bits() - 1).to_f32()
+}
+
+/// The node whose numbers a texel holds; the color difference is not among them.
+pub(crate) fn node_of(values: [f32; 6], model: &Model) -> Node {
+    let [edge, level, slope_per_nm, a, b, c] = values;
+    let reflectance = [edge + ORIGIN_NM, level, slope_per_nm];
+    match model {
+        Model::Reflectance => Node { reflectance, ..Node::default() },
+        Model::Dyes(_) => {
+            Node { reflectance, dye: dye_number(a), fluorescence: [b, c, 0.0], de2000: 0.0 }
+        }
+        Model::Analytic(_) => {
+            Node { reflectance, dye: 0, fluorescence: [a + ORIGIN_NM, b, c], de2000: 0.0 }
+        }
+    }
+}
+
+/// A dye's number that was stored among other numbers.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a ring has at most 255 dyes; anything else saturates, and no cube takes it"
+)]
+fn dye_number(value: f32) -> u8 {
+    value as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slope_is_never_rounded_up() {
+        for slope in [0.01, -0.01, 0.0099, 1e-7, -0.2, 0.0] {
+            let stored = towards_zero(slope);
+            assert!(stored.abs() <= slope.abs(), "{stored} {slope}");
+            // A half has eleven digits, or steps of 6e-8.
+            assert!((stored - slope).abs() <= slope.abs() / 1024.0 + 6e-8, "{stored} {slope}");
+        }
+    }
+}

@@ -1,0 +1,72 @@
+//! Color under a light.
+
+use upglow::{ColorTable, Cube};
+use upglow_color::{Grid, Illuminant, Matrix3};
+
+use super::{Maker, attributes};
+use crate::band::single;
+use crate::{Attribute, Attributes, Compression};
+
+/// Linear RGB, in the cube's space, of the blend of each texel under a light.
+#[derive(Debug)]
+pub(super) struct RadianceMaker<'c> {
+    cube: &'c Cube,
+    light: Illuminant,
+    table: ColorTable,
+    rgb_from_xyz: Matrix3,
+    white: [f64; 3],
+}
+
+impl<'c> RadianceMaker<'c> {
+    pub(super) fn new(cube: &'c Cube, light: Illuminant) -> Self {
+        let contract = cube.contract();
+        let colorimetry = contract.on(Grid::FIT).relit(&contract.observer, &light);
+        Self {
+            cube,
+            table: cube.color_table(&colorimetry),
+            rgb_from_xyz: colorimetry.rgb_from_xyz_matrix(),
+            white: colorimetry.rgb_from_xyz(colorimetry.white()).0,
+            light,
+        }
+    }
+
+    /// Red, green, blue of each texel.
+    pub(super) fn fill_rgb(&self, rgb: &[[f32; 3]], planes: &mut [&mut [f32]]) {
+        let mut colors = vec![[0.0; 3]; rgb.len()];
+        self.table.xyz(rgb, &mut colors).expect("as many colors as texels");
+        for (i, xyz) in colors.into_iter().enumerate() {
+            let color = self.rgb_from_xyz * xyz.map(f64::from);
+            (0..3).for_each(|k| planes[k][i] = single(color[k]));
+        }
+    }
+}
+
+/// What the three channels hold.
+const CHANNELS: &str = "R, G, B: linear light that leaves the material, in the RGB space of \
+                        upglow.header, under upglow.light, which brings as much power as the \
+                        contract's light; the perfect diffuser has upglow.white";
+
+impl Maker for RadianceMaker<'_> {
+    fn channels(&self) -> Vec<String> {
+        ["R", "G", "B"].map(str::to_owned).to_vec()
+    }
+
+    fn attributes(&self) -> Attributes {
+        let mut attributes = attributes::common(self.cube, "radiance", CHANNELS);
+        attributes.insert("upglow.light".into(), Attribute::Text(self.light.name().into()));
+        attributes.insert("upglow.white".into(), Attribute::Float3(self.white.map(single)));
+        attributes
+    }
+
+    fn compression(&self) -> Compression {
+        Compression::Zip
+    }
+
+    fn is_light(&self) -> bool {
+        true
+    }
+
+    fn fill(&self, rgb: &[[f32; 3]], planes: &mut [&mut [f32]]) {
+        self.fill_rgb(rgb, planes);
+    }
+}

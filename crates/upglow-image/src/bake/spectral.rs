@@ -1,0 +1,97 @@
+//! Reflectance in bands, and re-radiation between them.
+
+use upglow::{Cube, Interpolation, Model};
+use upglow_color::{Grid, LinearRgb};
+
+use super::radiance::RadianceMaker;
+use super::{Maker, attributes};
+use crate::band::single;
+use crate::{
+    Attribute, Attributes, BISPECTRAL_UNIT, BispectralUnit, Compression, LAYOUT_VERSION,
+    LAYOUT_VERSION_VALUE, SpectralChannel,
+};
+
+/// The blend of each texel, one channel for each band and each pair of bands that rises.
+#[derive(Debug)]
+pub(super) struct SpectralMaker<'c> {
+    cube: &'c Cube,
+    grid: Grid,
+    preview: RadianceMaker<'c>,
+}
+
+/// What the channels hold.
+const CHANNELS: &str = "T.<wavelength>: share of the light at a wavelength that leaves at it, with \
+                        what fluorescence gives back in the same band; T.<incident>.<outgoing>: \
+                        share that leaves in the band of a longer wavelength; R, G, B: linear color \
+                        under the contract's light";
+
+/// The channels that programs without spectra show.
+pub(super) const PREVIEW: [&str; 3] = ["R", "G", "B"];
+
+impl<'c> SpectralMaker<'c> {
+    pub(super) fn new(cube: &'c Cube, grid: Grid) -> Self {
+        let preview = RadianceMaker::new(cube, cube.contract().illuminant.clone());
+        Self { cube, grid, preview }
+    }
+
+    fn is_bispectral(&self) -> bool {
+        !matches!(self.cube.model(), Model::Reflectance)
+    }
+
+    /// Numbers of the bands of each pair that rises, in the order of the channels.
+    fn pairs(&self) -> impl Iterator<Item = [usize; 2]> + use<> {
+        let count = if self.is_bispectral() { self.grid.len() } else { 0 };
+        (0..count).flat_map(move |i| (i + 1..count).map(move |o| [i, o]))
+    }
+}
+
+impl Maker for SpectralMaker<'_> {
+    fn channels(&self) -> Vec<String> {
+        let nm: Vec<f64> = self.grid.wavelengths_nm().collect();
+        let bands = nm.iter().map(|&nm| SpectralChannel::Reflectance { nm });
+        let pairs =
+            self.pairs().map(|[i, o]| SpectralChannel::Reradiation { in_nm: nm[i], out_nm: nm[o] });
+        let spectral = bands.chain(pairs).map(|channel| channel.to_string());
+        PREVIEW.map(str::to_owned).into_iter().chain(spectral).collect()
+    }
+
+    fn attributes(&self) -> Attributes {
+        let mut attributes = attributes::common(self.cube, "spectral", CHANNELS);
+        let text = |text: &str| Attribute::Text(text.into());
+        attributes.insert(LAYOUT_VERSION.into(), text(LAYOUT_VERSION_VALUE));
+        if self.is_bispectral() {
+            attributes.insert(BISPECTRAL_UNIT.into(), text(BispectralUnit::PerBand.name()));
+        }
+        attributes
+    }
+
+    /// Blocks of one row: sixteen rows of 864 channels would take half a gigabyte at 16K.
+    fn compression(&self) -> Compression {
+        Compression::Zips
+    }
+
+    fn fill(&self, rgb: &[[f32; 3]], planes: &mut [&mut [f32]]) {
+        let (preview, spectral) = planes.split_at_mut(PREVIEW.len());
+        self.preview.fill_rgb(rgb, preview);
+        let (bands, moved) = spectral.split_at_mut(self.grid.len());
+        let pairs: Vec<[usize; 2]> = self.pairs().collect();
+        for (texel, rgb) in rgb.iter().enumerate() {
+            let color = LinearRgb(rgb.map(f64::from));
+            let mixture = self.cube.lookup(color, Interpolation::Blend);
+            let mixture = mixture.expect("texels outside were repaired or refused");
+            if mixture.is_fluorescent() {
+                let matrix = mixture.reradiation_matrix(self.grid);
+                for (i, band) in bands.iter_mut().enumerate() {
+                    band[texel] = single(matrix[i][i]);
+                }
+                for (plane, [i, o]) in moved.iter_mut().zip(&pairs) {
+                    plane[texel] = single(matrix[*o][*i]);
+                }
+            } else {
+                for (band, nm) in bands.iter_mut().zip(self.grid.wavelengths_nm()) {
+                    band[texel] = single(mixture.reflectance(nm));
+                }
+            }
+        }
+    }
+}

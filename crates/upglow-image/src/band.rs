@@ -1,0 +1,63 @@
+//! Rows of a picture.
+
+use rayon::prelude::*;
+
+use crate::Encoding;
+
+/// Some whole rows of a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Band {
+    /// Number of its first row, from 0 at the top.
+    pub first_row: usize,
+    /// Pixels in a row.
+    pub width: usize,
+    /// Red, green, blue of each pixel, row by row. As stored: integers as fractions, 0..=1;
+    /// floats as they are, NaN and infinities included. Gray has three equal numbers.
+    pub rgb: Vec<[f32; 3]>,
+    /// Alpha of each pixel, where the picture has it.
+    pub alpha: Option<Vec<f32>>,
+}
+
+/// Pixels that one core decodes at a time: enough to be worth handing over.
+const DECODED_TOGETHER: usize = 4096;
+
+impl Band {
+    /// How many rows.
+    pub fn rows(&self) -> usize {
+        self.rgb.len().checked_div(self.width).unwrap_or(0)
+    }
+
+    /// Makes the stored numbers linear. Alpha is linear already.
+    pub fn decode(&mut self, encoding: Encoding) {
+        if encoding == Encoding::Linear {
+            return;
+        }
+        self.rgb.par_chunks_mut(DECODED_TOGETHER).for_each(|pixels| {
+            for v in pixels.as_flattened_mut() {
+                *v = single(encoding.to_linear(f64::from(*v)));
+            }
+        });
+    }
+}
+
+/// Rounds to what a picture stores.
+#[expect(clippy::cast_possible_truncation, reason = "pictures hold single precision")]
+pub(crate) fn single(value: f64) -> f32 {
+    value as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn decoding_leaves_alpha_and_linear_numbers_alone() {
+        let stored =
+            Band { first_row: 0, width: 1, rgb: vec![[0.5; 3]; 2], alpha: Some(vec![0.5; 2]) };
+        let mut band = stored.clone();
+        band.decode(Encoding::Linear);
+        assert_eq!(band, stored);
+        band.decode(Encoding::Gamma(2.0));
+        assert_eq!((band.rgb[1], &band.alpha, band.rows()), ([0.25; 3], &stored.alpha, 2));
+    }
+}

@@ -1,0 +1,65 @@
+//! Colors of the contract on a screen.
+
+use upglow_color::{Contract, Grid, Matrix3, RgbSpace, Xyz};
+
+use super::Judge;
+
+/// The way from the contract's XYZ to sRGB: white is white.
+#[derive(Debug)]
+pub(super) struct Display {
+    srgb_from_xyz: Matrix3,
+    xyz_from_rgb: Matrix3,
+}
+
+impl Display {
+    pub(super) fn new(judge: &Judge) -> Self {
+        let colorimetry = judge.table().colorimetry();
+        let srgb = Contract {
+            space: RgbSpace::named("srgb").expect("it is built in"),
+            ..Contract::default()
+        };
+        let srgb = srgb.on(Grid::FIT);
+        let [from, to] = [colorimetry.white(), srgb.white()];
+        let adapted = upglow_color::Adaptation::default().target_from_source(from, to);
+        let columns = [0, 1, 2].map(|k| {
+            let mut unit = [0.0; 3];
+            unit[k] = 1.0;
+            colorimetry.xyz_from_rgb(upglow_color::LinearRgb(unit)).0
+        });
+        Self {
+            srgb_from_xyz: srgb.rgb_from_xyz_matrix() * adapted,
+            xyz_from_rgb: Matrix3::from_columns(columns),
+        }
+    }
+
+    /// The color in 8 bits; what sRGB cannot hold is cut off by channel.
+    pub(super) fn srgb(&self, xyz: Xyz) -> [u8; 3] {
+        (self.srgb_from_xyz * xyz.0).map(|v| byte(encoded(v.clamp(0.0, 1.0))))
+    }
+
+    /// A color of the contract's RGB in 8 bits.
+    pub(super) fn srgb_of_rgb(&self, rgb: [f64; 3]) -> [u8; 3] {
+        self.srgb(Xyz(self.xyz_from_rgb * rgb))
+    }
+
+    /// How bright a color of the contract's RGB looks: 0..=1, sRGB-encoded luminance.
+    pub(super) fn brightness(&self, rgb: [f64; 3]) -> f64 {
+        encoded((self.xyz_from_rgb * rgb)[1].clamp(0.0, 1.0))
+    }
+}
+
+/// The encoding of sRGB.
+///
+/// # Source
+///
+/// IEC 61966-2-1.
+fn encoded(linear: f64) -> f64 {
+    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+}
+
+/// 0..=1 in 8 bits.
+#[expect(clippy::cast_possible_truncation, reason = "it is clamped and rounded first")]
+#[expect(clippy::cast_sign_loss, reason = "it is clamped and rounded first")]
+pub(super) fn byte(share: f64) -> u8 {
+    (255.0 * share.clamp(0.0, 1.0)).round() as u8
+}

@@ -1,0 +1,307 @@
+//! The page that shows what pictures need: one file with everything in it.
+
+mod style;
+mod text;
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+
+use super::palette::{Heat, place};
+use super::{CheckReport, CubeOpinion, Flaw, Raster, WorstTexel};
+use style::STYLE;
+use text::{escaped, grouped, percent, plural, value};
+use upglow_fit::{Gap, StandingKind};
+
+/// A picture and what was found.
+#[derive(Clone, Copy, Debug)]
+pub struct CheckedPicture<'a> {
+    /// Its name, as people know it.
+    pub name: &'a str,
+    /// The RGB space of its values.
+    pub space: &'a str,
+    /// The light of the contract.
+    pub light: &'a str,
+    /// The cube that was asked, if one was.
+    pub cube: Option<&'a str>,
+    /// What was found.
+    pub report: &'a CheckReport,
+}
+
+/// A page of HTML about `pictures`: no scripts, nothing loaded from elsewhere, well-formed as XML.
+/// Each picture prints on one sheet.
+pub fn check_page(pictures: &[CheckedPicture<'_>]) -> String {
+    let title = match pictures {
+        [one] => format!("What {} needs", escaped(one.name)),
+        many => format!("What {} pictures need", many.len()),
+    };
+    let overview = if pictures.len() > 1 { overview(pictures) } else { String::new() };
+    let articles: String = pictures.iter().enumerate().map(|(i, p)| article(i, p)).collect();
+    format!(
+        "<!DOCTYPE html>\n<html xmlns=\"http://www.w3.org/1999/xhtml\" lang=\"en\">\n<head>\n\
+         <meta charset=\"utf-8\"/>\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n\
+         <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<main>\n\
+         {overview}{articles}</main>\n</body>\n</html>\n"
+    )
+}
+
+fn overview(pictures: &[CheckedPicture<'_>]) -> String {
+    let row = |(i, picture): (usize, &CheckedPicture<'_>)| {
+        format!(
+            "<tr><td><a href=\"#picture-{i}\">{}</a></td><td class=\"wide\">{}</td><td>{}</td></tr>\n",
+            escaped(picture.name),
+            bar(picture.report),
+            headline(picture.report),
+        )
+    };
+    let rows: String = pictures.iter().enumerate().map(row).collect();
+    let count = pictures.len();
+    format!(
+        "<section class=\"overview\">\n<h1>What {count} pictures need</h1>\n\
+         <table>\n<tbody>\n{rows}</tbody>\n</table>\n</section>\n"
+    )
+}
+
+fn article(index: usize, picture: &CheckedPicture<'_>) -> String {
+    let CheckedPicture { name, space, light, cube, report } = *picture;
+    let (width, height) = (report.width, report.height);
+    let opinion = report.cube.map(|opinion| self::opinion(&opinion, cube.unwrap_or("the cube")));
+    format!(
+        "<article id=\"picture-{index}\">\n<header>\n<h2>{}</h2>\n\
+         <p class=\"facts\">{width} × {height} texels · {} · seen under {}</p>\n</header>\n\
+         <p class=\"verdict\">{}</p>\n<p class=\"next\">{}</p>\n{}{}{}{}{}{}</article>\n",
+        escaped(name),
+        escaped(space),
+        escaped(light),
+        headline(report),
+        next(report),
+        bar(report),
+        shares(report),
+        pictures(report),
+        flaws(report),
+        worst(&report.worst),
+        opinion.unwrap_or_default(),
+    )
+}
+
+/// What is true of the picture, in a few words.
+fn headline(report: &CheckReport) -> String {
+    let counts = &report.counts;
+    let share = |part| percent(part, counts.texels);
+    let needs = share(counts.needs_fluorescence);
+    match (counts.no_color, counts.unreachable, counts.needs_fluorescence) {
+        (0, 0, 0) => "A reflectance shows every texel.".into(),
+        (0, 0, _) => format!("{needs} of the texels need fluorescence; materials show them all."),
+        (0, unreachable, 0) => format!("No material shows {} of the texels.", share(unreachable)),
+        (0, unreachable, _) => {
+            format!(
+                "{needs} of the texels need fluorescence, no material shows {}.",
+                share(unreachable)
+            )
+        }
+        (no_color, ..) => format!("{} no color.", plural(no_color, "texel is", "texels are")),
+    }
+}
+
+/// What to do about it, in one sentence.
+fn next(report: &CheckReport) -> &'static str {
+    let counts = &report.counts;
+    if counts.no_color > 0 {
+        "Find what wrote values that are no numbers (the first places are below), or make them black with <code>--repair</code>."
+    } else if !counts.all_in_range() {
+        "Baking refuses values outside 0 to 1: correct them, or choose <code>--repair clip</code>, <code>scale</code> or <code>nearest</code>."
+    } else if counts.unreachable > 0 {
+        "Desaturate what is pink to purple in the map, or let <code>--repair nearest</code> move it to the nearest color that a material shows."
+    } else if counts.needs_fluorescence > 0 {
+        "Bake it with a cube that has dyes: without them, what is yellow to brown in the map comes out duller."
+    } else {
+        "Bake it: nothing in it needs fluorescence."
+    }
+}
+
+/// The four kinds of texels: class of style, name, count.
+fn kinds(report: &CheckReport) -> [(&'static str, &'static str, u64); 4] {
+    let counts = &report.counts;
+    [
+        ("reflectance", "a reflectance shows it", counts.reflectance),
+        ("fluorescence", "needs fluorescence", counts.needs_fluorescence),
+        ("unreachable", "no material shows it", counts.unreachable),
+        ("no-color", "no color: not a number or infinite", counts.no_color),
+    ]
+}
+
+fn bar(report: &CheckReport) -> String {
+    let texels = report.counts.texels;
+    let part = |(class, name, count): (&str, &str, u64)| {
+        // At least a hair of each kind that is there.
+        let width = (100.0 * count as f64 / texels as f64).max(0.4);
+        format!(
+            "<span class=\"{class}\" style=\"flex-grow:{width:.3}\" title=\"{name}: {}\"></span>",
+            percent(count, texels)
+        )
+    };
+    let parts: String = kinds(report).into_iter().filter(|kind| kind.2 > 0).map(part).collect();
+    format!("<div class=\"bar\">{parts}</div>\n")
+}
+
+fn shares(report: &CheckReport) -> String {
+    let texels = report.counts.texels;
+    let item = |(class, name, count): (&str, &str, u64)| {
+        format!(
+            "<li><span class=\"key {class}\"></span><b>{}</b> {name} <small>{}</small></li>\n",
+            percent(count, texels),
+            grouped(count)
+        )
+    };
+    let kinds = kinds(report).into_iter();
+    let shown = kinds.filter(|&(class, _, count)| class != "no-color" || count > 0);
+    format!("<ul class=\"shares\">\n{}</ul>\n", shown.map(item).collect::<String>())
+}
+
+fn pictures(report: &CheckReport) -> String {
+    format!(
+        "<div class=\"pictures\">\n<figure>{}<figcaption>The picture, as sRGB shows it</figcaption>\
+         </figure>\n<figure>{}<figcaption>What it needs; ΔE00 of the furthest texel</figcaption>{}\
+         </figure>\n</div>\n",
+        image(&report.thumbnail, "the picture"),
+        image(&report.heat, "the heat map"),
+        legend(report),
+    )
+}
+
+/// Pictures narrower than this are shown with sharp texels.
+const FEW_PIXELS: u32 = 256;
+
+fn image(raster: &Raster, name: &str) -> String {
+    let data = STANDARD.encode(raster.to_png());
+    let class = if raster.width() < FEW_PIXELS { " class=\"texels\"" } else { "" };
+    let (width, height) = (raster.width(), raster.height());
+    format!(
+        "<img{class} width=\"{width}\" height=\"{height}\" alt=\"{name}\" \
+         src=\"data:image/png;base64,{data}\"/>"
+    )
+}
+
+fn legend(report: &CheckReport) -> String {
+    let counts = &report.counts;
+    let mut rows = ramp("beyond reflectance", Heat::Fluorescence);
+    rows += &ramp("beyond any material", Heat::Unreachable);
+    rows += "<div class=\"ramp plain\"><span>a reflectance</span><i class=\"gray\"></i></div>\n";
+    if counts.no_color > 0 {
+        rows += "<div class=\"ramp plain\"><span>no color</span><i class=\"no-color\"></i></div>\n";
+    }
+    format!("<div class=\"legend\">\n{rows}</div>")
+}
+
+/// Differences that a ramp is marked at.
+const TICKS: [f64; 4] = [1.0, 3.0, 10.0, 30.0];
+
+fn ramp(name: &str, heat: fn(f64) -> Heat) -> String {
+    // Enough straight lines to hide that the ramp's are straight in another place.
+    let stops = (0..=16).map(|i| 30.0_f64.ln_1p() * f64::from(i) / 16.0).map(f64::exp_m1);
+    let stop = |de2000| format!(",{} {:.1}%", hex(heat(de2000).color()), 100.0 * place(de2000));
+    let stops: String = stops.map(stop).collect();
+    let tick =
+        |de2000: f64| format!("<b style=\"left:{:.1}%\">{de2000}</b>", 100.0 * place(de2000));
+    let ticks: String = TICKS.into_iter().map(tick).collect();
+    format!(
+        "<div class=\"ramp\"><span>{name}</span>\
+         <i style=\"background:linear-gradient(to right{stops})\">{ticks}</i></div>\n"
+    )
+}
+
+fn flaws(report: &CheckReport) -> String {
+    if report.counts.all_in_range() {
+        return "<p class=\"fine\">All values are in 0 to 1.</p>\n".into();
+    }
+    let row = |flaw: Flaw| {
+        let places: Vec<String> = report
+            .located
+            .iter()
+            .filter(|texel| texel.flaw == flaw)
+            .map(|texel| {
+                let [r, g, b] = texel.rgb.map(value);
+                format!("<span class=\"place\">({}, {}): {r}, {g}, {b}</span>", texel.x, texel.y)
+            })
+            .collect();
+        format!(
+            "<tr><th class=\"name\">{}</th><td class=\"number\">{}</td><td>{}</td></tr>\n",
+            flaw_name(flaw),
+            grouped(report.counts.of(flaw)),
+            places.join(" ")
+        )
+    };
+    let found = Flaw::ALL.into_iter().filter(|&flaw| report.counts.of(flaw) > 0);
+    format!(
+        "<h3>Values out of range</h3>\n<table>\n<thead><tr><th>value</th><th class=\"number\">texels\
+         </th><th>the first, as (column, row): red, green, blue</th></tr></thead>\n\
+         <tbody>\n{}</tbody>\n</table>\n",
+        found.map(row).collect::<String>()
+    )
+}
+
+fn flaw_name(flaw: Flaw) -> &'static str {
+    match flaw {
+        Flaw::AboveOne => "above 1",
+        Flaw::Negative => "negative",
+        Flaw::NotANumber => "not a number",
+        Flaw::Infinite => "infinite",
+    }
+}
+
+fn worst(texels: &[WorstTexel]) -> String {
+    if texels.is_empty() {
+        return String::new();
+    }
+    let rows: String = texels.iter().map(worst_row).collect();
+    format!(
+        "<h3>The worst texels</h3>\n<table>\n<thead><tr><th>column, row</th><th>red, green, blue</th>\
+         <th>asked for</th><th>nearest reflectance</th><th>nearest of any material</th></tr></thead>\n\
+         <tbody>\n{rows}</tbody>\n</table>\n\
+         <p class=\"note\">Swatches are cut off where sRGB ends: colors that differ may look alike. \
+         The number beside one is its ΔE00 from the color asked for.</p>\n"
+    )
+}
+
+fn worst_row(texel: &WorstTexel) -> String {
+    let [r, g, b] = texel.rgb.map(value);
+    let [asked, reflectance, any] = texel.swatches.map(hex);
+    let swatch =
+        |color: &str| format!("<span class=\"swatch\" style=\"background:{color}\"></span>");
+    let beside = |gap: &Gap| match gap.distance {
+        0.0 => "shown".into(),
+        _ => format!("{:.2}", gap.de2000),
+    };
+    let class = match texel.kind {
+        StandingKind::Unreachable => "unreachable",
+        _ => "fluorescence",
+    };
+    format!(
+        "<tr><td><span class=\"key {class}\"></span>{}, {}</td><td>{r}, {g}, {b}</td><td>{}</td>\
+         <td>{}{}</td><td>{}{}</td></tr>\n",
+        texel.x,
+        texel.y,
+        swatch(&asked),
+        swatch(&reflectance),
+        beside(&texel.gaps.reflectance),
+        swatch(&any),
+        beside(&texel.gaps.fluorescence),
+    )
+}
+
+fn opinion(opinion: &CubeOpinion, cube: &str) -> String {
+    let CubeOpinion { texels, within_one, within_two, mean, greatest } = *opinion;
+    let share = |share: f64| text::percent_of(share);
+    format!(
+        "<h3>What {} makes of it</h3>\n<p>Of {} texels in range its blend shows <b>{}</b> within 1 \
+         ΔE00 and <b>{}</b> within 2; the mean is {mean:.2}, the greatest {greatest:.2}.</p>\n",
+        escaped(cube),
+        grouped(texels),
+        share(within_one),
+        share(within_two),
+    )
+}
+
+fn hex([r, g, b]: [u8; 3]) -> String {
+    format!("#{r:02x}{g:02x}{b:02x}")
+}

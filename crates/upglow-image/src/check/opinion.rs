@@ -1,0 +1,82 @@
+//! A cube's opinion of a picture: how well its materials show each texel.
+
+use upglow::ColorTable;
+use upglow_color::{Colorimetry, LinearRgb, Xyz, ciede2000};
+
+/// How well a cube's blend shows the texels in 0..=1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CubeOpinion {
+    /// Texels that the cube was asked for: those with all values in 0..=1.
+    pub texels: u64,
+    /// Share of them shown within 1 ΔE00.
+    pub within_one: f64,
+    /// Share of them shown within 2 ΔE00.
+    pub within_two: f64,
+    /// Mean ΔE00.
+    pub mean: f64,
+    /// Greatest ΔE00.
+    pub greatest: f64,
+}
+
+/// Sums that parts of a picture add up to, in whole numbers: their order does not matter.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct OpinionTally {
+    texels: u64,
+    within_one: u64,
+    within_two: u64,
+    sum: u128,
+    greatest: f64,
+}
+
+/// ΔE00 of a texel is summed in multiples of this: finer than the single precision of the cube.
+const UNIT: f64 = 1.0 / 16_777_216.0;
+
+impl OpinionTally {
+    pub(super) fn add(&mut self, other: &Self) {
+        self.texels += other.texels;
+        self.within_one += other.within_one;
+        self.within_two += other.within_two;
+        self.sum += other.sum;
+        self.greatest = self.greatest.max(other.greatest);
+    }
+
+    /// Asks for a run of texels.
+    pub(super) fn ask(&mut self, cube: &ColorTable, colorimetry: &Colorimetry, rgb: &[[f32; 3]]) {
+        let mut shown = vec![[0.0; 3]; rgb.len()];
+        cube.xyz(rgb, &mut shown).expect("there is room for each texel");
+        for (&asked, shown) in rgb.iter().zip(shown) {
+            // The table says "not a number" where it was not to be asked.
+            if !shown[0].is_nan() {
+                let asked = colorimetry.xyz_from_rgb(LinearRgb(asked.map(f64::from)));
+                let [asked, shown] = [asked, Xyz(shown.map(f64::from))];
+                let [asked, shown] = [asked, shown].map(|xyz| colorimetry.lab_from_xyz(xyz));
+                self.note(ciede2000(asked, shown));
+            }
+        }
+    }
+
+    fn note(&mut self, de2000: f64) {
+        self.texels += 1;
+        self.within_one += u64::from(de2000 <= 1.0);
+        self.within_two += u64::from(de2000 <= 2.0);
+        self.sum += u128::from(units(de2000));
+        self.greatest = self.greatest.max(de2000);
+    }
+
+    pub(super) fn finish(&self) -> CubeOpinion {
+        let texels = self.texels.max(1) as f64;
+        CubeOpinion {
+            texels: self.texels,
+            within_one: self.within_one as f64 / texels,
+            within_two: self.within_two as f64 / texels,
+            mean: self.sum as f64 * UNIT / texels,
+            greatest: self.greatest,
+        }
+    }
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "it is rounded first")]
+#[expect(clippy::cast_sign_loss, reason = "a difference is not negative")]
+fn units(de2000: f64) -> u64 {
+    (de2000 / UNIT).round() as u64
+}

@@ -1,0 +1,47 @@
+//! A small picture for people.
+
+/// 8-bit sRGB, row by row from the top.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Raster {
+    width: u32,
+    height: u32,
+    pixels: Vec<[u8; 3]>,
+}
+
+impl Raster {
+    /// Rows of `width` pixels.
+    pub(super) fn new(width: usize, pixels: Vec<[u8; 3]>) -> Self {
+        let height = pixels.len() / width;
+        let side = |n: usize| u32::try_from(n).expect("a raster is at most a thousand pixels wide");
+        Self { width: side(width), height: side(height), pixels }
+    }
+
+    /// Pixels in a row.
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Rows.
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// `[row][column]`, red, green, blue.
+    pub fn pixels(&self) -> &[[u8; 3]] {
+        &self.pixels
+    }
+
+    /// The picture as a PNG file.
+    pub fn to_png(&self) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        let mut encoder = png::Encoder::new(&mut bytes, self.width, self.height);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_depth(png::BitDepth::Eight);
+        encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+        let written = encoder
+            .write_header()
+            .and_then(|mut writer| writer.write_image_data(self.pixels.as_flattened()));
+        written.expect("a picture with pixels is written to memory");
+        bytes
+    }
+}

@@ -1,0 +1,57 @@
+//! The RGB space that chromaticities in a file stand for.
+
+use upglow_color::RgbSpace;
+
+/// Files round chromaticities to four or five digits, and single precision to seven. No two
+/// built-in spaces are nearer to each other than 0.005 in some number.
+const SAME: f64 = 2e-4;
+
+/// The space of these primaries (red, green, blue) and white: a built-in one where all eight
+/// numbers agree, else one named `custom`; `None` where they make no space.
+pub(crate) fn space(primaries: [[f64; 2]; 3], white: [f64; 2]) -> Option<RgbSpace> {
+    let same = |known: &RgbSpace| {
+        let [red, green, blue] = known.primaries();
+        let known = [red, green, blue, known.white()];
+        let found = [primaries[0], primaries[1], primaries[2], white];
+        known.as_flattened().iter().zip(found.as_flattened()).all(|(a, b)| (a - b).abs() < SAME)
+    };
+    let named = RgbSpace::names().into_iter().filter_map(|name| RgbSpace::named(name).ok());
+    named.into_iter().find(same).or_else(|| RgbSpace::custom("custom", primaries, white).ok())
+}
+
+/// The same for the single-precision numbers of a file: red, green, blue, white.
+pub(crate) fn space_of_singles(found: [[f32; 2]; 4]) -> Option<RgbSpace> {
+    let [red, green, blue, white] = found.map(|c| c.map(f64::from));
+    space([red, green, blue], white)
+}
+
+/// The eight numbers of a space as an OpenEXR attribute states them.
+pub fn chromaticities(space: &RgbSpace) -> crate::Attribute {
+    let [red, green, blue] = space.primaries();
+    let singles = [red, green, blue, space.white()].map(|c| c.map(crate::band::single));
+    crate::Attribute::Chromaticities(singles)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_built_in_space_is_found_from_its_rounded_numbers() {
+        for name in RgbSpace::names() {
+            let known = RgbSpace::named(name).unwrap();
+            let round = |v: f64| (v * 1e4).round() / 1e4;
+            let primaries = known.primaries().map(|c| c.map(round));
+            let found = space(primaries, known.white().map(round)).unwrap();
+            assert_eq!(found.name(), name);
+        }
+    }
+
+    #[test]
+    fn other_primaries_are_custom_and_nonsense_is_none() {
+        let wide = space([[0.7, 0.3], [0.2, 0.75], [0.1, 0.05]], [0.3127, 0.329]).unwrap();
+        assert_eq!(wide.name(), "custom");
+        assert!(space([[0.0; 2]; 3], [0.0; 2]).is_none());
+        assert!(space_of_singles([[f32::NAN; 2]; 4]).is_none());
+    }
+}

@@ -1,0 +1,100 @@
+//! How stored numbers stand for light, and back to light.
+
+use std::fmt;
+use std::str::FromStr;
+
+/// How stored numbers stand for linear light. Negative numbers are encoded by their size.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Encoding {
+    /// They are linear.
+    Linear,
+    /// The curve of sRGB.
+    Srgb,
+    /// A power: linear = stored^γ, γ > 0.
+    Gamma(f64),
+}
+
+/// Where the curve of sRGB leaves its straight beginning, stored.
+const SRGB_KNEE: f64 = 0.04045;
+
+impl Encoding {
+    /// The linear number that `stored` stands for.
+    ///
+    /// # Source
+    ///
+    /// `iec61966`, equations 5 and 6, for [`Encoding::Srgb`].
+    pub fn to_linear(self, stored: f64) -> f64 {
+        let size = stored.abs();
+        let linear = match self {
+            Self::Linear => size,
+            Self::Srgb if size <= SRGB_KNEE => size / 12.92,
+            Self::Srgb => ((size + 0.055) / 1.055).powf(2.4),
+            Self::Gamma(gamma) => size.powf(gamma),
+        };
+        linear.copysign(stored)
+    }
+}
+
+/// A word that names no encoding.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("unknown encoding {found:?}, expected linear, srgb or a gamma above 0, as 2.2")]
+pub struct UnknownEncoding {
+    /// The word.
+    pub found: String,
+}
+
+impl FromStr for Encoding {
+    type Err = UnknownEncoding;
+
+    fn from_str(word: &str) -> Result<Self, Self::Err> {
+        let gamma = || word.parse().ok().filter(|g: &f64| g.is_finite() && *g > 0.0);
+        match word {
+            "linear" => Ok(Self::Linear),
+            "srgb" => Ok(Self::Srgb),
+            _ => gamma().map(Self::Gamma).ok_or_else(|| UnknownEncoding { found: word.into() }),
+        }
+    }
+}
+
+impl fmt::Display for Encoding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Linear => f.write_str("linear"),
+            Self::Srgb => f.write_str("srgb"),
+            Self::Gamma(gamma) => write!(f, "{gamma}"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn srgb_has_its_published_values_and_no_jump() {
+        assert_eq!([0.0, 1.0].map(|v| Encoding::Srgb.to_linear(v)), [0.0, 1.0]);
+        // Middle gray of 8 bit, from the formula to five digits.
+        assert!((Encoding::Srgb.to_linear(119.0 / 255.0) - 0.18448).abs() < 1e-5);
+        let jump =
+            Encoding::Srgb.to_linear(SRGB_KNEE + 1e-12) - Encoding::Srgb.to_linear(SRGB_KNEE);
+        // The standard's rounded constants leave 1e-8.
+        assert!(jump.abs() < 2e-8, "{jump}");
+    }
+
+    #[test]
+    fn negative_numbers_mirror_positive_ones() {
+        for encoding in [Encoding::Linear, Encoding::Srgb, Encoding::Gamma(2.2)] {
+            assert_eq!(encoding.to_linear(-0.4), -encoding.to_linear(0.4));
+        }
+    }
+
+    #[test]
+    fn words_name_encodings() {
+        for word in ["linear", "srgb", "2.2"] {
+            assert_eq!(word.parse::<Encoding>().unwrap().to_string(), word);
+        }
+        for word in ["", "gamma", "0", "-1", "NaN", "inf"] {
+            assert!(word.parse::<Encoding>().is_err(), "{word}");
+        }
+    }
+}

@@ -1,0 +1,205 @@
+//! The blocks of an OpenEXR image: where they lie, and their content unpacked.
+
+use exr::math::{RoundingMode, Vec2};
+use exr::meta::BlockDescription;
+use exr::meta::attribute::{
+    ChannelDescription, Compression, IntegerBounds, LevelMode, LineOrder, SampleType, Text,
+    TileDescription,
+};
+use exr::meta::header::Header as UnpackHeader;
+use half::slice::HalfFloatSliceExt;
+
+use crate::exr_header::{Header, Packing, Sample};
+
+/// The most bytes that one block may take unpacked: 256 rows of 16,384 pixels in 64 float channels.
+pub(crate) const MAX_BLOCK_BYTES: u64 = 1 << 30;
+
+/// A rectangle of the image at full resolution that is stored as one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Block {
+    /// Its place in the table of blocks.
+    pub(crate) index: usize,
+    /// First column and row, from 0.
+    pub(crate) origin: [usize; 2],
+    /// Columns and rows.
+    pub(crate) size: [usize; 2],
+}
+
+/// How an image is cut into blocks.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Blocks {
+    image: [usize; 2],
+    block: [usize; 2],
+}
+
+impl Blocks {
+    pub(crate) fn of(header: &Header) -> Self {
+        let rows = [header.size[0], header.packing.rows()];
+        Self { image: header.size, block: header.tiles.map_or(rows, |tiles| tiles.size) }
+    }
+
+    /// Columns and rows of the largest block.
+    pub(crate) fn block_size(self) -> [usize; 2] {
+        [0, 1].map(|k| self.block[k].min(self.image[k]))
+    }
+
+    /// Blocks side by side, and on top of each other.
+    pub(crate) fn counts(self) -> [usize; 2] {
+        [0, 1].map(|k| self.image[k].div_ceil(self.block[k]))
+    }
+
+    /// The blocks that touch these columns and rows, row by row; the ranges are not empty.
+    pub(crate) fn touching(
+        self,
+        [columns, rows]: [std::ops::Range<usize>; 2],
+    ) -> impl Iterator<Item = Block> {
+        let [across, _] = self.counts();
+        let range = |k: usize, r: std::ops::Range<usize>| {
+            r.start / self.block[k]..r.end.div_ceil(self.block[k])
+        };
+        let (left_to_right, down) = (range(0, columns), range(1, rows));
+        down.flat_map(move |y| left_to_right.clone().map(move |x| self.at([x, y], across)))
+    }
+
+    fn at(self, place: [usize; 2], across: usize) -> Block {
+        let origin = [0, 1].map(|k| place[k] * self.block[k]);
+        let size = [0, 1].map(|k| self.block[k].min(self.image[k] - origin[k]));
+        Block { index: place[1] * across + place[0], origin, size }
+    }
+}
+
+/// Bytes of one pixel in all channels.
+pub(crate) fn pixel_bytes(header: &Header) -> usize {
+    header.channels.iter().map(|c| c.sample.bytes()).sum()
+}
+
+/// Unpacks blocks of one image.
+#[derive(Debug)]
+pub(crate) struct Unpacker {
+    header: UnpackHeader,
+}
+
+impl Unpacker {
+    pub(crate) fn new(header: &Header) -> Self {
+        let channel = |c: &crate::exr_header::Channel| ChannelDescription {
+            // DWA packs a channel by its name.
+            name: Text::new_or_none(&c.name).unwrap_or_default(),
+            sample_type: match c.sample {
+                Sample::Half => SampleType::F16,
+                Sample::Float => SampleType::F32,
+                Sample::Uint => SampleType::U32,
+            },
+            quantize_linearly: c.is_linear,
+            sampling: Vec2(1, 1),
+        };
+        let size = Vec2(header.size[0], header.size[1]);
+        let channels = header.channels.iter().map(channel).collect();
+        let blocks = header.tiles.map_or(BlockDescription::ScanLines, |tiles| {
+            BlockDescription::Tiles(TileDescription {
+                tile_size: Vec2(tiles.size[0], tiles.size[1]),
+                level_mode: LevelMode::Singular,
+                rounding_mode: RoundingMode::Down,
+            })
+        });
+        let header = UnpackHeader::new("part".into(), size, channels).with_encoding(
+            compression(header.packing),
+            blocks,
+            LineOrder::Increasing,
+        );
+        Self { header }
+    }
+
+    /// The samples of a block: rows, in each row the channels, in each channel the columns.
+    pub(crate) fn unpack(&self, packed: Vec<u8>, block: Block) -> Result<Vec<u8>, String> {
+        let section = IntegerBounds::new((0, 0), (block.size[0], block.size[1]));
+        let method = self.header.compression;
+        let whole = block.size[0] * block.size[1] * self.header.channels.bytes_per_pixel;
+        if matches!(method, Compression::DWAA(_) | Compression::DWAB(_)) && packed.len() != whole {
+            check_dwa(&packed, whole)?;
+        }
+        // The crate's B44 panics on damaged data (1.74.2 subtracts with overflow), and its PIZ and DWA
+        // index by what they read: a file must not end the program, so this one call is fenced.
+        let unpacked = std::panic::catch_unwind(|| {
+            method.decompress_image_section_from_le(&self.header, packed, section, false)
+        });
+        match unpacked {
+            Ok(bytes) => bytes.map_err(|error| error.to_string()),
+            Err(_) => Err("values that no such data has".into()),
+        }
+    }
+}
+
+/// Refuses sizes in the head of a DWA block that its pixels cannot have: the crate allocates what
+/// is stated there, and a failed allocation ends the program.
+fn check_dwa(packed: &[u8], whole: usize) -> Result<(), String> {
+    /// Version, seven sizes in bytes, two counts of 16-bit numbers, and a choice.
+    const COUNTERS: usize = 11;
+    /// Pixels are padded to squares of 8 and stored as runs, which may be longer than what they hold.
+    const PADDED: u64 = 64;
+    /// Padding of the smallest blocks.
+    const LEAST: u64 = 1 << 16;
+    let most = whole as u64 * PADDED + LEAST;
+    let most = most.min(2 * MAX_BLOCK_BYTES);
+    let counters = packed.as_chunks().0.iter().take(COUNTERS).map(|b| u64::from_le_bytes(*b));
+    match counters.into_iter().find(|&found| found > most) {
+        Some(found) => Err(format!("a section of {found} bytes for a block of {whole}")),
+        None => Ok(()),
+    }
+}
+
+fn compression(packing: Packing) -> Compression {
+    match packing {
+        Packing::None => Compression::Uncompressed,
+        Packing::Rle => Compression::RLE,
+        Packing::Zips => Compression::ZIP1,
+        Packing::Zip => Compression::ZIP16,
+        Packing::Piz => Compression::PIZ,
+        Packing::Pxr24 => Compression::PXR24,
+        Packing::B44 => Compression::B44,
+        Packing::B44a => Compression::B44A,
+        Packing::Dwaa => Compression::DWAA(None),
+        Packing::Dwab => Compression::DWAB(None),
+    }
+}
+
+/// The samples in `bytes`, as single precision.
+pub(crate) fn decode(sample: Sample, bytes: &[u8], to: &mut [f32]) {
+    match sample {
+        Sample::Half => {
+            let halves: Vec<half::f16> =
+                bytes.as_chunks().0.iter().map(|b| half::f16::from_le_bytes(*b)).collect();
+            halves.convert_to_f32_slice(to);
+        }
+        Sample::Float => {
+            let words = bytes.as_chunks().0;
+            to.iter_mut().zip(words).for_each(|(v, b)| *v = f32::from_le_bytes(*b));
+        }
+        Sample::Uint => {
+            let words = bytes.as_chunks().0;
+            to.iter_mut().zip(words).for_each(|(v, b)| *v = u32::from_le_bytes(*b) as f32);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_tile_the_image_without_gap_or_overlap() {
+        for (image, block) in [([37, 21], [16, 8]), ([5, 40], [5, 16]), ([64, 64], [64, 64])] {
+            let blocks = Blocks { image, block };
+            let mut covered = vec![0; image[0] * image[1]];
+            for (n, block) in blocks.touching([0..image[0], 0..image[1]]).enumerate() {
+                assert_eq!(block.index, n);
+                for y in block.origin[1]..block.origin[1] + block.size[1] {
+                    for x in block.origin[0]..block.origin[0] + block.size[0] {
+                        covered[y * image[0] + x] += 1;
+                    }
+                }
+            }
+            assert!(covered.iter().all(|&n| n == 1));
+            assert_eq!(blocks.touching([3..4, 20..21]).count(), 1);
+        }
+    }
+}

@@ -1,0 +1,551 @@
+//! The header of an OpenEXR file: parsed with every size checked, printed with sorted attributes.
+//!
+//! The layout is that of `openexr`, "OpenEXR File Layout". Written here rather than with the
+//! `exr` crate, which keeps attributes in a hash map: its files differ from run to run.
+
+use std::io::Read;
+
+use crate::exr_attribute::{Attribute, Attributes};
+use crate::exr_error::ExrError;
+
+/// The first four bytes of every OpenEXR file.
+pub(crate) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
+const VERSION: u8 = 2;
+const TILED: u32 = 0x200;
+const LONG_NAMES: u32 = 0x400;
+const DEEP: u32 = 0x800;
+const MULTI_PART: u32 = 0x1000;
+
+/// Names of attributes, types and channels end within this many bytes.
+const MAX_NAME: usize = 255;
+/// Names up to this length need no flag in the version field.
+const SHORT_NAME: usize = 31;
+/// One attribute; larger ones are hostile: 100,000 channels of 255 characters fit.
+const MAX_ATTRIBUTE: u32 = 64 << 20;
+/// All headers of a file together.
+const MAX_HEADER: u64 = 256 << 20;
+/// Rows or columns; textures end at a quarter of this, and sizes in bytes stay far from overflow.
+pub(crate) const MAX_SIDE: usize = 1 << 17;
+/// Parts of one file: far beyond the views and layers of any production file.
+const MAX_PARTS: usize = 4096;
+
+/// How a channel stores its samples.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sample {
+    /// 16-bit float: 11 significant bits, at most 65504.
+    Half,
+    /// 32-bit float.
+    Float,
+    /// 32-bit unsigned integer; read, never written.
+    Uint,
+}
+
+impl Sample {
+    /// Bytes of one sample.
+    pub fn bytes(self) -> usize {
+        match self {
+            Self::Half => 2,
+            Self::Float | Self::Uint => 4,
+        }
+    }
+
+    fn code(self) -> i32 {
+        match self {
+            Self::Uint => 0,
+            Self::Half => 1,
+            Self::Float => 2,
+        }
+    }
+}
+
+/// One channel of an image.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Channel {
+    /// Its name; a point separates layers.
+    pub name: String,
+    /// How it stores its samples.
+    pub sample: Sample,
+    /// Whether B44 compression packs it as it is, and not as its logarithm.
+    pub(crate) is_linear: bool,
+}
+
+/// A rectangle of pixels, both corners included; OpenEXR counts from any origin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Window {
+    /// Column and row of the first pixel.
+    pub min: [i32; 2],
+    /// Column and row of the last pixel.
+    pub max: [i32; 2],
+}
+
+impl Window {
+    /// The window of a picture of this width and height whose first pixel is (0, 0).
+    ///
+    /// A side of 0 or beyond 131,072 is cut to that range: no file holds it.
+    pub fn of_size(size: [usize; 2]) -> Self {
+        let last = |side: usize| i32::try_from(side.clamp(1, MAX_SIDE) - 1).unwrap_or(i32::MAX);
+        Self { min: [0, 0], max: size.map(last) }
+    }
+
+    /// Width and height; `None` unless both are 1 or more.
+    pub fn size(self) -> Option<[usize; 2]> {
+        let side = |k: usize| {
+            let pixels = i64::from(self.max[k]) - i64::from(self.min[k]) + 1;
+            usize::try_from(pixels).ok().filter(|&side| side > 0)
+        };
+        Some([side(0)?, side(1)?])
+    }
+
+    fn to_bytes(self) -> Vec<u8> {
+        let numbers = [self.min, self.max];
+        numbers.as_flattened().iter().flat_map(|v| v.to_le_bytes()).collect()
+    }
+
+    fn from_bytes(bytes: &[u8]) -> Option<Self> {
+        let words: &[[u8; 4]; 4] = bytes.as_chunks().0.try_into().ok()?;
+        let [x0, y0, x1, y1] = words.map(i32::from_le_bytes);
+        (bytes.len() == 16).then_some(Self { min: [x0, y0], max: [x1, y1] })
+    }
+}
+
+/// How blocks are packed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Packing {
+    None,
+    Rle,
+    Zips,
+    Zip,
+    Piz,
+    Pxr24,
+    B44,
+    B44a,
+    Dwaa,
+    Dwab,
+}
+
+const PACKINGS: [Packing; 10] = [
+    Packing::None,
+    Packing::Rle,
+    Packing::Zips,
+    Packing::Zip,
+    Packing::Piz,
+    Packing::Pxr24,
+    Packing::B44,
+    Packing::B44a,
+    Packing::Dwaa,
+    Packing::Dwab,
+];
+
+impl Packing {
+    /// Rows of a block where the image is stored by rows.
+    pub(crate) fn rows(self) -> usize {
+        match self {
+            Self::None | Self::Rle | Self::Zips => 1,
+            Self::Zip | Self::Pxr24 => 16,
+            Self::Piz | Self::B44 | Self::B44a | Self::Dwaa => 32,
+            Self::Dwab => 256,
+        }
+    }
+
+    fn code(self) -> u8 {
+        u8::try_from(PACKINGS.iter().position(|&p| p == self).unwrap_or(0)).unwrap_or(0)
+    }
+}
+
+/// Tiles: width and height of one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Tiles {
+    pub(crate) size: [usize; 2],
+}
+
+/// What a part of a file says of itself.
+#[derive(Clone, Debug)]
+pub(crate) struct Header {
+    pub(crate) channels: Vec<Channel>,
+    pub(crate) packing: Packing,
+    pub(crate) data: Window,
+    pub(crate) display: Window,
+    /// Width and height of the data window.
+    pub(crate) size: [usize; 2],
+    pub(crate) tiles: Option<Tiles>,
+    /// Blocks of all levels; stated where a file has many parts.
+    pub(crate) chunk_count: Option<usize>,
+    /// Name of the part, where there is one.
+    pub(crate) name: Option<String>,
+    /// What is left of the attributes.
+    pub(crate) attributes: Attributes,
+}
+
+/// The headers of a file, and where they end.
+#[derive(Debug)]
+pub(crate) struct Headers {
+    pub(crate) parts: Vec<Header>,
+    pub(crate) multi_part: bool,
+    pub(crate) end: u64,
+}
+
+impl Headers {
+    /// Reads the headers from the beginning of a file.
+    pub(crate) fn read(source: impl Read) -> Result<Self, ExrError> {
+        let mut bytes = Bytes { source, position: 0 };
+        let magic = bytes.take::<4>("the magic number")?;
+        if magic != MAGIC {
+            return Err(ExrError::NotExr { found: magic });
+        }
+        let version = u32::from_le_bytes(bytes.take("the version")?);
+        if version.to_le_bytes()[0] != VERSION {
+            return Err(ExrError::Version { found: version.to_le_bytes()[0] });
+        }
+        if version & DEEP != 0 {
+            return Err(ExrError::Unsupported { found: "deep data", expected: "flat images" });
+        }
+        let multi_part = version & MULTI_PART != 0;
+        let mut parts = Vec::new();
+        while let Some(header) = read_header(&mut bytes, version)? {
+            parts.push(header);
+            if parts.len() > MAX_PARTS {
+                let (found, expected) = (format!("over {MAX_PARTS}"), format!("{MAX_PARTS}"));
+                return Err(ExrError::header("number of parts", found, expected));
+            }
+            if !multi_part {
+                break;
+            }
+        }
+        if parts.is_empty() {
+            return Err(ExrError::header("number of parts", "0", "1 or more"));
+        }
+        Ok(Self { parts, multi_part, end: bytes.position })
+    }
+}
+
+/// The next header; `None` at the empty one that ends a file's list.
+fn read_header<R: Read>(bytes: &mut Bytes<R>, version: u32) -> Result<Option<Header>, ExrError> {
+    let mut raw: Vec<(String, String, Vec<u8>)> = Vec::new();
+    loop {
+        let name = bytes.name("an attribute's name")?;
+        if name.is_empty() {
+            break;
+        }
+        let kind = bytes.name("an attribute's type")?;
+        let length = u32::from_le_bytes(bytes.take("an attribute's size")?);
+        if length > MAX_ATTRIBUTE {
+            let expected = format!("at most {MAX_ATTRIBUTE} bytes");
+            return Err(ExrError::header(&name, format!("{length} bytes"), expected));
+        }
+        if bytes.position > MAX_HEADER {
+            return Err(ExrError::header("header", "over 256 MiB", "at most 256 MiB"));
+        }
+        let value = bytes.vec(length as usize, &name)?;
+        raw.push((name, kind, value));
+    }
+    if raw.is_empty() && version & MULTI_PART != 0 {
+        return Ok(None);
+    }
+    build(raw, version).map(Some)
+}
+
+fn build(raw: Vec<(String, String, Vec<u8>)>, version: u32) -> Result<Header, ExrError> {
+    let value = |name: &'static str, kind: &'static str| -> Result<&[u8], ExrError> {
+        match raw.iter().find(|(n, ..)| n == name) {
+            Some((_, found, bytes)) if found == kind => Ok(bytes),
+            Some((_, found, _)) => Err(ExrError::header(name, format!("a {found}"), kind)),
+            None => Err(ExrError::header(name, "absent", kind)),
+        }
+    };
+    let window = |name| {
+        let bytes = value(name, "box2i")?;
+        Window::from_bytes(bytes)
+            .ok_or_else(|| ExrError::header(name, format!("{} bytes", bytes.len()), "16 bytes"))
+    };
+    let data = window("dataWindow")?;
+    let size = data.size().filter(|size| size.iter().all(|&side| side <= MAX_SIDE));
+    let Some(size) = size else {
+        let Window { min, max } = data;
+        let expected = format!("1 to {MAX_SIDE} pixels a side");
+        return Err(ExrError::header("dataWindow", format!("{min:?} to {max:?}"), expected));
+    };
+    let has = |name: &str| raw.iter().any(|(n, ..)| n == name);
+    let kind = has("type").then(|| value("type", "string")).transpose()?;
+    let tiled = match kind {
+        Some(b"scanlineimage") => false,
+        Some(b"tiledimage") => true,
+        Some(other) => {
+            let found = String::from_utf8_lossy(other).into_owned();
+            return Err(ExrError::header("type", found, "scanlineimage or tiledimage"));
+        }
+        None => version & TILED != 0,
+    };
+    let tiles = tiled.then(|| parse_tiles(value("tiles", "tiledesc")?)).transpose()?;
+    let count = has("chunkCount").then(|| value("chunkCount", "int")).transpose()?;
+    let chunk_count = count.map(parse_count).transpose()?;
+    let name = has("name").then(|| value("name", "string")).transpose()?;
+    Ok(Header {
+        channels: parse_channels(value("channels", "chlist")?)?,
+        packing: parse_packing(value("compression", "compression")?)?,
+        data,
+        display: window("displayWindow")?,
+        size,
+        tiles,
+        chunk_count,
+        name: name.map(|bytes| String::from_utf8_lossy(bytes).into_owned()),
+        attributes: collect(raw)?,
+    })
+}
+
+/// Attributes that [`Header`] has as fields, or that say nothing of the pixels.
+const FIELDS: [&str; 12] = [
+    "channels",
+    "chunkCount",
+    "compression",
+    "dataWindow",
+    "displayWindow",
+    "lineOrder",
+    "name",
+    "pixelAspectRatio",
+    "screenWindowCenter",
+    "screenWindowWidth",
+    "tiles",
+    "type",
+];
+
+/// Whether the format itself states this attribute.
+pub(crate) fn is_reserved(name: &str) -> bool {
+    FIELDS.contains(&name)
+}
+
+fn collect(raw: Vec<(String, String, Vec<u8>)>) -> Result<Attributes, ExrError> {
+    let mut attributes = Attributes::new();
+    for (name, kind, bytes) in raw.into_iter().filter(|(name, ..)| !is_reserved(name)) {
+        let length = bytes.len();
+        let Some(value) = Attribute::from_bytes(&kind, bytes) else {
+            return Err(ExrError::header(&name, format!("a {kind} of {length} bytes"), kind));
+        };
+        attributes.insert(name, value);
+    }
+    Ok(attributes)
+}
+
+fn parse_count(bytes: &[u8]) -> Result<usize, ExrError> {
+    let count = bytes.try_into().ok().map(i32::from_le_bytes);
+    count
+        .and_then(|count| usize::try_from(count).ok())
+        .ok_or_else(|| ExrError::header("chunkCount", format!("{count:?}"), "a number of blocks"))
+}
+
+fn parse_packing(bytes: &[u8]) -> Result<Packing, ExrError> {
+    let known = |code: u8| PACKINGS.get(usize::from(code)).copied();
+    let packing = bytes.first().filter(|_| bytes.len() == 1).and_then(|&code| known(code));
+    packing.ok_or_else(|| {
+        ExrError::header("compression", format!("code {bytes:?}"), "a code from 0 to 9")
+    })
+}
+
+fn parse_tiles(bytes: &[u8]) -> Result<Tiles, ExrError> {
+    let wrong = |found: String| {
+        ExrError::header("tiles", found, format!("width and height from 1 to {MAX_SIDE}"))
+    };
+    let ([width, height], [_mode]) = bytes.as_chunks::<4>() else {
+        return Err(wrong(format!("{} bytes", bytes.len())));
+    };
+    let size = [width, height].map(|side| u32::from_le_bytes(*side) as usize);
+    if size.iter().any(|side| !(1..=MAX_SIDE).contains(side)) {
+        return Err(wrong(format!("{} by {}", size[0], size[1])));
+    }
+    Ok(Tiles { size })
+}
+
+/// Bytes after the name of a channel: sample type, flag and padding, sampling of x and y.
+const CHANNEL_TAIL: usize = 16;
+
+fn parse_channels(mut bytes: &[u8]) -> Result<Vec<Channel>, ExrError> {
+    let cut = || ExrError::truncated("the list of channels");
+    let mut channels: Vec<Channel> = Vec::new();
+    loop {
+        let end = bytes.iter().take(MAX_NAME + 1).position(|&b| b == 0).ok_or_else(cut)?;
+        let name = String::from_utf8_lossy(&bytes[..end]).into_owned();
+        bytes = &bytes[end + 1..];
+        if name.is_empty() {
+            break;
+        }
+        let (tail, rest) = bytes.split_at_checked(CHANNEL_TAIL).ok_or_else(cut)?;
+        channels.push(parse_channel(name, tail)?);
+        bytes = rest;
+    }
+    let mut names: Vec<&str> = channels.iter().map(|c| c.name.as_str()).collect();
+    names.sort_unstable();
+    if let Some(pair) = names.windows(2).find(|pair| pair[0] == pair[1]) {
+        return Err(ExrError::header("channels", format!("{} twice", pair[0]), "each name once"));
+    }
+    Ok(channels)
+}
+
+fn parse_channel(name: String, tail: &[u8]) -> Result<Channel, ExrError> {
+    let words = tail.as_chunks::<4>().0;
+    let sample = match i32::from_le_bytes(words[0]) {
+        0 => Sample::Uint,
+        1 => Sample::Half,
+        2 => Sample::Float,
+        other => {
+            let found = format!("sample type {other} in channel {name}");
+            return Err(ExrError::header("channels", found, "0, 1 or 2"));
+        }
+    };
+    let [x, y] = [words[2], words[3]].map(i32::from_le_bytes);
+    if (x, y) != (1, 1) {
+        let found = format!("channel {name} sampled every {x} by {y} pixels");
+        return Err(ExrError::header("channels", found, "every pixel"));
+    }
+    Ok(Channel { name, sample, is_linear: tail[4] != 0 })
+}
+
+/// Bytes that are read forward, with what was expected where they end.
+struct Bytes<R> {
+    source: R,
+    position: u64,
+}
+
+impl<R: Read> Bytes<R> {
+    fn take<const N: usize>(&mut self, what: &str) -> Result<[u8; N], ExrError> {
+        let mut bytes = [0; N];
+        self.source.read_exact(&mut bytes).map_err(|error| ExrError::read(error, what))?;
+        self.position += N as u64;
+        Ok(bytes)
+    }
+
+    /// Grows with what is there, so that a false size costs nothing.
+    fn vec(&mut self, length: usize, what: &str) -> Result<Vec<u8>, ExrError> {
+        let mut bytes = Vec::new();
+        let mut limited = (&mut self.source).take(length as u64);
+        limited.read_to_end(&mut bytes).map_err(|error| ExrError::read(error, what))?;
+        if bytes.len() < length {
+            return Err(ExrError::truncated(format!("attribute {what}")));
+        }
+        self.position += length as u64;
+        Ok(bytes)
+    }
+
+    fn name(&mut self, what: &str) -> Result<String, ExrError> {
+        let mut name = Vec::new();
+        loop {
+            match self.take::<1>(what)? {
+                [0] => return Ok(String::from_utf8_lossy(&name).into_owned()),
+                [byte] if name.len() < MAX_NAME => name.push(byte),
+                _ => {
+                    let expected = format!("at most {MAX_NAME} characters");
+                    return Err(ExrError::header(
+                        "header",
+                        format!("{what} without end"),
+                        expected,
+                    ));
+                }
+            }
+        }
+    }
+}
+
+/// The bytes before the table of blocks of a file of one part, stored by rows.
+///
+/// `channels` are sorted by name.
+pub(crate) fn print(
+    channels: &[Channel],
+    packing: Packing,
+    [data, display]: [Window; 2],
+    attributes: &Attributes,
+) -> Vec<u8> {
+    let other = |kind: &str, bytes| Attribute::Other { kind: kind.into(), bytes };
+    let mut all = attributes.clone();
+    all.extend([
+        ("channels".into(), other("chlist", print_channels(channels))),
+        ("compression".into(), other("compression", vec![packing.code()])),
+        ("dataWindow".into(), other("box2i", data.to_bytes())),
+        ("displayWindow".into(), other("box2i", display.to_bytes())),
+        ("lineOrder".into(), other("lineOrder", vec![0])),
+        ("pixelAspectRatio".into(), Attribute::Float(1.0)),
+        ("screenWindowCenter".into(), Attribute::Float2([0.0; 2])),
+        ("screenWindowWidth".into(), Attribute::Float(1.0)),
+    ]);
+    let channel_names = channels.iter().map(|c| c.name.len());
+    let longest = all.keys().map(String::len).chain(channel_names).max().unwrap_or(0);
+    let flags = if longest > SHORT_NAME { LONG_NAMES } else { 0 };
+    let mut bytes = MAGIC.to_vec();
+    bytes.extend((u32::from(VERSION) | flags).to_le_bytes());
+    for (name, value) in &all {
+        let content = value.to_bytes();
+        for text in [name, value.kind()] {
+            bytes.extend(text.as_bytes());
+            bytes.push(0);
+        }
+        bytes.extend(u32::try_from(content.len()).unwrap_or(u32::MAX).to_le_bytes());
+        bytes.extend(content);
+    }
+    bytes.push(0);
+    bytes
+}
+
+fn print_channels(channels: &[Channel]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    for Channel { name, sample, is_linear } in channels {
+        bytes.extend(name.as_bytes());
+        bytes.push(0);
+        for word in [sample.code(), i32::from(*is_linear), 1, 1] {
+            bytes.extend(word.to_le_bytes());
+        }
+    }
+    bytes.push(0);
+    bytes
+}
+
+/// Whether a channel or attribute may have this name.
+pub(crate) fn is_name(name: &str) -> bool {
+    (1..=MAX_NAME).contains(&name.len()) && !name.contains('\0')
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn printed() -> (Vec<Channel>, Attributes, Vec<u8>) {
+        let channel = |name: &str, sample| Channel { name: name.into(), sample, is_linear: false };
+        let channels = vec![channel("B", Sample::Half), channel("Z", Sample::Float)];
+        let attributes = Attributes::from([
+            ("owner".into(), "me".into()),
+            ("a name of more than thirty-one letters".into(), 2.5.into()),
+        ]);
+        let display = Window::of_size([7, 9]);
+        let data = Window { min: [-1, 2], max: [3, 8] };
+        let bytes = print(&channels, Packing::Zip, [data, display], &attributes);
+        (channels, attributes, bytes)
+    }
+
+    #[test]
+    fn a_header_survives_its_bytes() {
+        let (channels, attributes, bytes) = printed();
+        let headers = Headers::read(&bytes[..]).unwrap();
+        let header = &headers.parts[0];
+        assert_eq!(headers.end, bytes.len() as u64);
+        assert_eq!((header.size, header.data.min), ([5, 7], [-1, 2]));
+        assert_eq!((&header.channels, &header.attributes), (&channels, &attributes));
+        assert_eq!((header.packing, header.display.max), (Packing::Zip, [6, 8]));
+    }
+
+    #[test]
+    fn a_header_cut_short_anywhere_says_where() {
+        let (_, _, bytes) = printed();
+        for length in 0..bytes.len() {
+            let message = Headers::read(&bytes[..length]).unwrap_err().to_string();
+            assert!(message.starts_with("the file ends inside "), "{length}: {message}");
+        }
+    }
+
+    #[test]
+    fn sizes_that_no_picture_has_are_refused() {
+        let message = |window: Window| {
+            let bytes = print(&[], Packing::None, [window; 2], &Attributes::new());
+            Headers::read(&bytes[..]).unwrap_err().to_string()
+        };
+        let huge = message(Window { min: [0, 0], max: [i32::MAX, 3] });
+        assert!(huge.ends_with("expected 1 to 131072 pixels a side"), "{huge}");
+        let inverted = message(Window { min: [0, i32::MAX], max: [5, i32::MIN] });
+        assert!(inverted.starts_with("dataWindow is [0, 2147483647] to"), "{inverted}");
+    }
+}

@@ -1,0 +1,145 @@
+//! A picture as linear light in one RGB space, whatever its file stores.
+
+use std::path::Path;
+
+use rayon::prelude::*;
+use upglow_color::{Contract, Grid, Matrix3, RgbSpace};
+
+use crate::band::single;
+use crate::{Alpha, Band, Encoding, Picture, PictureError};
+
+/// What is taken for granted of files that do not say it themselves.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Assumed {
+    /// Their RGB space.
+    pub space: Option<RgbSpace>,
+    /// How they store light.
+    pub encoding: Option<Encoding>,
+}
+
+/// Why a picture has no linear light.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum LinearPictureError {
+    /// The picture cannot be read.
+    #[error(transparent)]
+    Picture(#[from] PictureError),
+    /// Neither the file nor the caller names an RGB space.
+    #[error("the file does not name its RGB space, expected one to be given")]
+    Space,
+    /// Neither the file nor the caller says how light is stored.
+    #[error(
+        "the file does not say how it stores light, expected linear, srgb or a gamma to be given"
+    )]
+    Encoding,
+}
+
+/// A picture opened for reading its linear light from top to bottom.
+#[derive(Debug)]
+pub struct LinearPicture {
+    picture: Picture,
+    space: RgbSpace,
+    encoding: Encoding,
+}
+
+/// Two ways around the same matrices differ by this much in single precision; what is nearer to 0
+/// or 1 stands for it.
+const ROUNDING: f32 = 4e-6;
+
+impl LinearPicture {
+    /// Opens a picture. What its file says goes before what is assumed.
+    ///
+    /// # Errors
+    ///
+    /// [`LinearPictureError`] if it cannot be read, or nobody says what its numbers mean.
+    pub fn open(path: &Path, assumed: &Assumed) -> Result<Self, LinearPictureError> {
+        let picture = Picture::open(path)?;
+        let space = picture.space().or(assumed.space.as_ref()).cloned();
+        let encoding = picture.encoding().or(assumed.encoding);
+        Ok(Self {
+            picture,
+            space: space.ok_or(LinearPictureError::Space)?,
+            encoding: encoding.ok_or(LinearPictureError::Encoding)?,
+        })
+    }
+
+    /// The file's own facts.
+    pub fn picture(&self) -> &Picture {
+        &self.picture
+    }
+
+    /// Its RGB space, by itself or as assumed.
+    pub fn space(&self) -> &RgbSpace {
+        &self.space
+    }
+
+    /// How it stores light, by itself or as assumed.
+    pub fn encoding(&self) -> Encoding {
+        self.encoding
+    }
+
+    /// The next rows, at least `rows` of them or what is left, as linear light in the space of the
+    /// picture itself; colors are those of the opaque picture, whatever its alpha.
+    ///
+    /// # Errors
+    ///
+    /// [`PictureError`] if the file is damaged there.
+    pub fn read_band(&mut self, rows: usize) -> Result<Option<Band>, PictureError> {
+        let Some(mut band) = self.picture.read_band(rows)? else { return Ok(None) };
+        band.decode(self.encoding);
+        if let (Some(Alpha::Associated), Some(alpha)) = (self.picture.alpha(), &band.alpha) {
+            band.rgb.par_iter_mut().zip(alpha).for_each(|(rgb, a)| {
+                *rgb = if *a == 0.0 { [0.0; 3] } else { rgb.map(|v| v / a) };
+            });
+        }
+        Ok(Some(band))
+    }
+
+    /// What takes its colors to the RGB space of a contract, under the contract's light and
+    /// adaptation; `None` where that is its own.
+    pub fn conversion_to(&self, contract: &Contract) -> Option<Conversion> {
+        if self.space == contract.space {
+            return None;
+        }
+        let from = Contract { space: self.space.clone(), ..contract.clone() }.on(Grid::FIT);
+        let primary = |k: usize| {
+            let mut rgb = [0.0; 3];
+            rgb[k] = 1.0;
+            from.xyz_from_rgb(upglow_color::LinearRgb(rgb)).0
+        };
+        let xyz_from_rgb = Matrix3::from_columns([0, 1, 2].map(primary));
+        Some(Conversion { matrix: contract.on(Grid::FIT).rgb_from_xyz_matrix() * xyz_from_rgb })
+    }
+}
+
+/// A linear map between two RGB spaces.
+#[derive(Clone, Copy, Debug)]
+pub struct Conversion {
+    matrix: Matrix3,
+}
+
+impl Conversion {
+    /// Converts each color in place; what rounding alone has moved beyond 0 or 1 returns there.
+    pub fn apply(&self, rgb: &mut [[f32; 3]]) {
+        rgb.par_iter_mut().for_each(|rgb| {
+            *rgb = (self.matrix * rgb.map(f64::from)).map(|v| snapped(single(v)));
+        });
+    }
+}
+
+fn snapped(v: f32) -> f32 {
+    let nearest = v.clamp(0.0, 1.0);
+    if (v - nearest).abs() < ROUNDING { nearest } else { v }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_rounding_moved_comes_back_and_the_rest_stays() {
+        assert_eq!([-1e-6, 0.5, 1.000_001].map(snapped), [0.0, 0.5, 1.0]);
+        assert_eq!([-1e-3, 1.01].map(snapped), [-1e-3, 1.01]);
+        assert!(snapped(f32::NAN).is_nan());
+    }
+}

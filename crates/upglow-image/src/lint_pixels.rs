@@ -1,0 +1,144 @@
+//! What a linter finds in the samples of a spectral file.
+
+use crate::exr_header::Sample;
+use crate::lint::{Found, Lint, Rule, band, bands_nm};
+use crate::{BISPECTRAL_UNIT, BispectralUnit, ExrError, ExrReader, SpectralChannel};
+
+/// Rounding to half precision: 2⁻¹² of each sample; twice that where samples are added up.
+const HALF_SLACK: f64 = 5e-4;
+/// Rounding to single precision, in sums of hundreds of samples.
+const FLOAT_SLACK: f64 = 1e-5;
+
+/// How often something is wrong, and where first.
+#[derive(Clone, Debug, Default)]
+struct Tally {
+    count: u64,
+    /// Column, row, channel, value.
+    first: Option<(usize, usize, String, f64)>,
+    /// The largest value.
+    most: f64,
+}
+
+impl Tally {
+    fn add(&mut self, x: usize, y: usize, name: &str, value: f64) {
+        self.count += 1;
+        self.most = self.most.max(value);
+        if self.first.is_none() {
+            self.first = Some((x, y, name.into(), value));
+        }
+    }
+
+    fn report(&self, what: &str) -> Option<String> {
+        let (x, y, name, value) = self.first.as_ref()?;
+        Some(format!("{} {what}, the first {value} in {name} at {x},{y}", self.count))
+    }
+}
+
+pub(crate) fn check_pixels(
+    reader: &mut ExrReader,
+    channels: &[Found],
+    lint: &mut Lint,
+) -> Result<(), ExrError> {
+    let [_, height] = reader.size();
+    let sums = Sums::new(reader, channels);
+    let [mut broken, mut negative, mut bright] = std::array::from_fn(|_| Tally::default());
+    let numbers: Vec<usize> = channels.iter().map(|found| found.number).collect();
+    for top in (0..height).step_by(reader.block_rows()) {
+        let rows = top..height.min(top + reader.block_rows());
+        let planes = reader.read_rows(rows, &numbers)?;
+        check_samples(reader.size()[0], top, channels, &planes, [&mut broken, &mut negative]);
+        sums.check(reader.size()[0], top, &planes, &mut bright);
+    }
+    if let Some(found) = broken.report("samples that are no finite numbers") {
+        lint.error(Rule::Finite, found, "finite numbers");
+    }
+    if let Some(found) = negative.report("negative samples") {
+        lint.error(Rule::Negative, found, "0 or more");
+    }
+    if let Some(found) = bright.report("sums of outgoing light above 1") {
+        let found = format!("{found}, the largest {}", bright.most);
+        lint.error(Rule::Energy, found, "at most 1 for each incident wavelength");
+    }
+    Ok(())
+}
+
+fn check_samples(
+    width: usize,
+    top: usize,
+    channels: &[Found],
+    planes: &[Vec<f32>],
+    [broken, negative]: [&mut Tally; 2],
+) {
+    for (found, plane) in channels.iter().zip(planes) {
+        let signed = matches!(found.channel, SpectralChannel::Radiance { stokes: 1.., .. });
+        for (i, &value) in plane.iter().enumerate() {
+            let (x, y) = (i % width, top + i / width);
+            if !value.is_finite() {
+                broken.add(x, y, &found.name, f64::from(value));
+            } else if value < 0.0 && !signed {
+                negative.add(x, y, &found.name, f64::from(value));
+            }
+        }
+    }
+}
+
+/// For each incident band the planes whose sum is the outgoing light, and the weight of each.
+struct Sums {
+    name: Vec<String>,
+    terms: Vec<Vec<(usize, f64)>>,
+    most: f64,
+}
+
+impl Sums {
+    fn new(reader: &ExrReader, channels: &[Found]) -> Self {
+        let bands = bands_nm(channels);
+        let stated = reader.attributes().get(BISPECTRAL_UNIT).and_then(|v| v.as_text());
+        let unit = stated.and_then(BispectralUnit::named);
+        let mut terms = vec![Vec::new(); bands.len()];
+        for (plane, found) in channels.iter().enumerate() {
+            let (incident, weight) = match (found.channel, unit) {
+                (SpectralChannel::Reflectance { nm }, _) => (band(&bands, nm), 1.0),
+                (SpectralChannel::Reradiation { in_nm, .. }, Some(BispectralUnit::PerBand)) => {
+                    (band(&bands, in_nm), 1.0)
+                }
+                (SpectralChannel::Reradiation { in_nm, out_nm }, Some(BispectralUnit::PerNm)) => {
+                    let width = band(&bands, out_nm).map_or(0.0, |o| band_width_nm(&bands, o));
+                    (band(&bands, in_nm), width)
+                }
+                // Without a unit the re-radiation cannot be added up: the diagonal alone is checked.
+                _ => (None, 0.0),
+            };
+            if let Some(incident) = incident {
+                terms[incident].push((plane, weight));
+            }
+        }
+        let half = channels.iter().any(|found| found.sample == Sample::Half);
+        let name = bands.iter().map(|&nm| SpectralChannel::Reflectance { nm }.to_string());
+        let most = 1.0 + if half { HALF_SLACK } else { FLOAT_SLACK };
+        Self { name: name.collect(), terms, most }
+    }
+
+    fn check(&self, width: usize, top: usize, planes: &[Vec<f32>], bright: &mut Tally) {
+        for (name, terms) in self.name.iter().zip(&self.terms) {
+            let pixels = terms.first().map_or(0, |(plane, _)| planes[*plane].len());
+            for i in 0..pixels {
+                let sum: f64 =
+                    terms.iter().map(|&(plane, w)| w * f64::from(planes[plane][i])).sum();
+                if sum > self.most {
+                    bright.add(i % width, top + i / width, name, sum);
+                }
+            }
+        }
+    }
+}
+
+/// From halfway to the band before to halfway to the band after; at the ends, the inner half twice.
+fn band_width_nm(bands: &[f64], index: usize) -> f64 {
+    let after = bands.get(index + 1).map(|next| next - bands[index]);
+    let before = index.checked_sub(1).map(|i| bands[index] - bands[i]);
+    match (before, after) {
+        (Some(before), Some(after)) => (before + after) / 2.0,
+        (Some(only), None) | (None, Some(only)) => only,
+        (None, None) => 0.0,
+    }
+}

@@ -1,0 +1,148 @@
+//! Colors of an OpenEXR file.
+
+use std::ops::Range;
+use std::path::Path;
+
+use upglow_color::RgbSpace;
+
+use super::{Alpha, Facts, PictureError, Pixels};
+use crate::chromaticities::space_of_singles;
+use crate::exr_header::{Channel, Header};
+use crate::{Attribute, Encoding, ExrReader};
+
+#[derive(Debug)]
+pub(super) struct ExrPicture {
+    reader: ExrReader,
+    /// Numbers of red, green and blue; thrice the same for gray.
+    colors: [usize; 3],
+    alpha: Option<usize>,
+}
+
+impl ExrPicture {
+    pub(super) fn open(path: &Path, layer: Option<&str>) -> Result<(Self, Facts), PictureError> {
+        let mut prefix = String::new();
+        let reader = ExrReader::open_with(path, |parts| {
+            let chosen = choose(parts, layer)?;
+            prefix = chosen.prefix;
+            Ok::<_, PictureError>(chosen.part)
+        })?;
+        let index = |name: &str| reader.channel(&format!("{prefix}{name}"));
+        let colors = match (index("R"), index("G"), index("B")) {
+            (Ok(red), Ok(green), Ok(blue)) => [red, green, blue],
+            _ => [index("Y")?; 3],
+        };
+        let alpha = index("A").ok();
+        let facts = Facts {
+            size: reader.size(),
+            space: space(&reader),
+            encoding: Some(Encoding::Linear),
+            alpha: alpha.map(|_| Alpha::Associated),
+            windows: Some([reader.data_window(), reader.display_window()]),
+            block_rows: reader.block_rows(),
+        };
+        Ok((Self { reader, colors, alpha }, facts))
+    }
+
+    pub(super) fn read(&mut self, rows: Range<usize>) -> Result<Pixels, PictureError> {
+        let [red, green, blue] = self.colors;
+        let gray = red == green;
+        let colors = if gray { vec![red] } else { vec![red, green, blue] };
+        let channels: Vec<usize> = colors.into_iter().chain(self.alpha).collect();
+        let planes = self.reader.read_rows(rows, &channels)?;
+        let plane = |k: usize| &planes[if gray { 0 } else { k }];
+        let rgb = plane(0).iter().zip(plane(1)).zip(plane(2)).map(|((r, g), b)| [*r, *g, *b]);
+        let rgb = rgb.collect();
+        Ok((rgb, self.alpha.and(planes.into_iter().last())))
+    }
+}
+
+/// A set of colors in a file: the part, and what stands before `R` in the channel's name.
+#[derive(Clone, Debug, PartialEq)]
+struct Layer {
+    part: usize,
+    part_name: Option<String>,
+    prefix: String,
+}
+
+impl Layer {
+    fn is_named(&self, name: &str) -> bool {
+        let of_channels = self.prefix.strip_suffix('.') == Some(name);
+        of_channels || (self.prefix.is_empty() && self.part_name.as_deref() == Some(name))
+    }
+
+    fn label(&self) -> String {
+        match (self.prefix.strip_suffix('.'), &self.part_name) {
+            (Some(layer), _) => layer.into(),
+            (None, Some(part)) => part.clone(),
+            (None, None) => "R, G, B".into(),
+        }
+    }
+}
+
+/// The layer of this name; without one the only plain R, G, B, or the only layer there is.
+fn choose(parts: &[Header], name: Option<&str>) -> Result<Layer, PictureError> {
+    let all: Vec<Layer> = parts.iter().enumerate().flat_map(|(i, part)| layers(i, part)).collect();
+    let only = |wanted: &dyn Fn(&Layer) -> bool| {
+        let mut fitting = all.iter().filter(|layer| wanted(layer));
+        fitting.next().filter(|_| fitting.next().is_none()).cloned()
+    };
+    let chosen = match name {
+        Some(name) => only(&|layer| layer.is_named(name)),
+        None => only(&|layer| layer.prefix.is_empty()).or_else(|| only(&|_| true)),
+    };
+    chosen.ok_or_else(|| not_chosen(parts, &all, name))
+}
+
+fn not_chosen(parts: &[Header], all: &[Layer], name: Option<&str>) -> PictureError {
+    /// A line that a person reads.
+    const SHOWN: usize = 12;
+    let channels = || parts.iter().flat_map(|part| part.channels.iter().map(|c| c.name.clone()));
+    let expected = match name {
+        Some(name) => format!("a layer or part {name:?} with R, G, B or Y"),
+        None if all.is_empty() => "R, G, B or Y".into(),
+        None => "one set of R, G, B, or the name of one of these layers".into(),
+    };
+    let found: Vec<String> = match all {
+        [] => channels().take(SHOWN + 1).collect(),
+        _ => all.iter().map(Layer::label).take(SHOWN + 1).collect(),
+    };
+    let mut found: Vec<String> = found.iter().map(|name| brief(name)).collect();
+    if found.len() > SHOWN {
+        found[SHOWN] = "…".into();
+    }
+    PictureError::Channels { found, expected }
+}
+
+/// A name as a part of one line.
+fn brief(name: &str) -> String {
+    /// Layers are named with a word or two.
+    const LONGEST: usize = 20;
+    name.chars().take(LONGEST).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
+}
+
+fn layers(part: usize, header: &Header) -> Vec<Layer> {
+    let names: Vec<&str> = header.channels.iter().map(|c: &Channel| c.name.as_str()).collect();
+    let has = |prefix: &str, name: &str| names.iter().any(|n| n.strip_prefix(prefix) == Some(name));
+    let with = |prefix: &str| Layer { part, part_name: header.name.clone(), prefix: prefix.into() };
+    let colored = names.iter().filter_map(|n| n.strip_suffix('R'));
+    let colored = colored.filter(|p| is_prefix(p) && has(p, "G") && has(p, "B"));
+    let mut found: Vec<Layer> = colored.map(with).collect();
+    let gray = names.iter().filter_map(|n| n.strip_suffix('Y')).filter(|p| is_prefix(p));
+    let gray: Vec<Layer> = gray.map(with).filter(|layer| !found.contains(layer)).collect();
+    found.extend(gray);
+    found
+}
+
+fn is_prefix(text: &str) -> bool {
+    text.is_empty() || text.ends_with('.')
+}
+
+fn space(reader: &ExrReader) -> Option<RgbSpace> {
+    match reader.attributes().get("chromaticities") {
+        Some(Attribute::Chromaticities(found)) => space_of_singles(*found),
+        _ => {
+            let aces = reader.attributes().get("acesImageContainerFlag")?;
+            RgbSpace::named("aces2065-1").ok().filter(|_| *aces == Attribute::Int(1))
+        }
+    }
+}

@@ -1,0 +1,335 @@
+//! Channel names of the spectral layout of OpenEXR.
+//!
+//! # Source
+//!
+//! `fichet`: radiance `S0.` to `S3.`, reflectance `T.`, re-radiation `T.` with two wavelengths, a
+//! comma as the decimal mark, because a point separates layers.
+
+use std::fmt;
+use std::str::FromStr;
+
+/// What a spectral channel holds. Wavelengths are nm, whatever unit the name was written in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SpectralChannel {
+    /// Radiance or its like: `S0.` and, for polarized light, `S1.` to `S3.`.
+    Radiance {
+        /// Number of the Stokes component, 0..=3.
+        stokes: u8,
+        /// Wavelength, nm; > 0.
+        nm: f64,
+    },
+    /// Reflectance or transmittance at one wavelength: `T.`; the diagonal of a re-radiation
+    /// matrix.
+    Reflectance {
+        /// Wavelength, nm; > 0.
+        nm: f64,
+    },
+    /// Light that comes in at one wavelength and leaves at another: `T.` with two wavelengths.
+    Reradiation {
+        /// Wavelength of the incident light, nm; > 0.
+        in_nm: f64,
+        /// Wavelength of the outgoing light, nm; > 0.
+        out_nm: f64,
+    },
+}
+
+/// Why a channel's name is not one of the layout.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SpectralNameError {
+    /// The name does not begin as a spectral channel does: an ordinary channel, not a fault.
+    #[error("channel {found:?} is not spectral, expected S0. to S3. or T.")]
+    NotSpectral {
+        /// The name.
+        found: String,
+    },
+    /// No number where one belongs.
+    #[error("channel {name:?} has no number before {unit:?}, expected one as 550,000000nm")]
+    NoNumber {
+        /// The name.
+        name: String,
+        /// What stands where the number should.
+        unit: String,
+    },
+    /// A point inside a number, or another part that is not a wavelength.
+    #[error("channel {name:?} has a decimal point, expected a comma as in 550,000000nm")]
+    DecimalPoint {
+        /// The name.
+        name: String,
+    },
+    /// The number is no wavelength.
+    #[error(
+        "channel {name:?} has the number {number:?}, expected digits with at most one comma, above 0"
+    )]
+    Number {
+        /// The name.
+        name: String,
+        /// The number.
+        number: String,
+    },
+    /// A unit that is neither meters nor hertz.
+    #[error(
+        "channel {name:?} has the unit {unit:?}, expected m or Hz with an SI prefix, as nm or THz"
+    )]
+    Unit {
+        /// The name.
+        name: String,
+        /// The unit.
+        unit: String,
+    },
+    /// Two wavelengths in a channel of radiance, or more than two.
+    #[error("channel {name:?} has {found} wavelengths, expected {expected}")]
+    Count {
+        /// The name.
+        name: String,
+        /// Wavelengths in it.
+        found: usize,
+        /// How many there may be.
+        expected: &'static str,
+    },
+}
+
+/// SI prefixes and the powers of ten they stand for; the two-letter one first.
+const PREFIXES: [(&str, i32); 20] = [
+    ("da", 1),
+    ("Y", 24),
+    ("Z", 21),
+    ("E", 18),
+    ("P", 15),
+    ("T", 12),
+    ("G", 9),
+    ("M", 6),
+    ("k", 3),
+    ("h", 2),
+    ("d", -1),
+    ("c", -2),
+    ("m", -3),
+    ("u", -6),
+    ("n", -9),
+    ("p", -12),
+    ("f", -15),
+    ("a", -18),
+    ("z", -21),
+    ("y", -24),
+];
+
+/// Speed of light in vacuum, m/s: exact by definition.
+const LIGHT_M_PER_S: f64 = 299_792_458.0;
+
+/// Nanometers in a meter, as a power of ten.
+const NANO: i32 = 9;
+
+impl SpectralChannel {
+    /// Whether a name begins as a spectral channel's does, well-formed or not.
+    pub fn is_spectral(name: &str) -> bool {
+        split(name).is_some()
+    }
+
+    /// The wavelength at which light is measured: the outgoing one of a re-radiation, nm.
+    pub fn outgoing_nm(self) -> f64 {
+        match self {
+            Self::Radiance { nm, .. } | Self::Reflectance { nm } => nm,
+            Self::Reradiation { out_nm, .. } => out_nm,
+        }
+    }
+}
+
+/// The kind, `S0` to `S3` or `T`, and what follows its point.
+fn split(name: &str) -> Option<(&str, &str)> {
+    let (kind, rest) = name.split_once('.')?;
+    matches!(kind, "S0" | "S1" | "S2" | "S3" | "T").then_some((kind, rest))
+}
+
+impl FromStr for SpectralChannel {
+    type Err = SpectralNameError;
+
+    fn from_str(name: &str) -> Result<Self, Self::Err> {
+        let Some((kind, rest)) = split(name) else {
+            return Err(SpectralNameError::NotSpectral { found: name.into() });
+        };
+        let parts: Vec<&str> = rest.split('.').collect();
+        // A part of digits alone is the whole part of a number with a point.
+        let digits = |part: &str| !part.is_empty() && part.bytes().all(|b| b.is_ascii_digit());
+        if parts.len() > 1 && parts[..parts.len() - 1].iter().any(|part| digits(part)) {
+            return Err(SpectralNameError::DecimalPoint { name: name.into() });
+        }
+        let waves = parts.iter().map(|part| wavelength_nm(name, part));
+        let waves = waves.collect::<Result<Vec<_>, _>>()?;
+        let stokes = kind.as_bytes().get(1).map(|digit| digit - b'0');
+        match (stokes, &waves[..]) {
+            (Some(stokes), &[nm]) => Ok(Self::Radiance { stokes, nm }),
+            (None, &[nm]) => Ok(Self::Reflectance { nm }),
+            (None, &[in_nm, out_nm]) => Ok(Self::Reradiation { in_nm, out_nm }),
+            (stokes, _) => {
+                let expected = if stokes.is_some() { "1" } else { "1 or 2" };
+                let found = waves.len();
+                Err(SpectralNameError::Count { name: name.into(), found, expected })
+            }
+        }
+    }
+}
+
+/// One wavelength or frequency, as `550,000000nm` or `545THz`, in nm.
+fn wavelength_nm(name: &str, text: &str) -> Result<f64, SpectralNameError> {
+    let end = text.find(|c: char| !(c.is_ascii_digit() || c == ',')).unwrap_or(text.len());
+    let (number, unit) = number_and_unit(text, end);
+    if number.is_empty() {
+        return Err(SpectralNameError::NoNumber { name: name.into(), unit: unit.into() });
+    }
+    let power = |base: &str| {
+        let prefix = unit.strip_suffix(base)?;
+        if prefix.is_empty() {
+            return Some(0);
+        }
+        PREFIXES.iter().find(|(known, _)| *known == prefix).map(|(_, power)| *power)
+    };
+    let nm = match (power("Hz"), power("m")) {
+        (Some(power), _) => parse(number, power).map(|hz| LIGHT_M_PER_S / hz * 1e9),
+        (None, Some(power)) => parse(number, power + NANO),
+        _ => return Err(SpectralNameError::Unit { name: name.into(), unit: unit.into() }),
+    };
+    nm.filter(|nm| nm.is_finite() && *nm > 0.0)
+        .ok_or_else(|| SpectralNameError::Number { name: name.into(), number: number.into() })
+}
+
+/// Splits at the unit; an exponent, as in `5,5e2nm`, belongs to the number.
+fn number_and_unit(text: &str, end: usize) -> (&str, &str) {
+    let (number, rest) = text.split_at(end);
+    let exponent = rest.strip_prefix(['e', 'E']).filter(|_| !number.is_empty());
+    let Some(exponent) = exponent else { return (number, rest) };
+    let unsigned = exponent.strip_prefix(['+', '-']).unwrap_or(exponent);
+    let digits = unsigned.bytes().take_while(u8::is_ascii_digit).count();
+    if digits == 0 {
+        return (number, rest);
+    }
+    let length = end + 1 + (exponent.len() - unsigned.len()) + digits;
+    text.split_at(length)
+}
+
+/// The number times a power of ten, rounded once: 550 n is exactly 550 nm.
+fn parse(number: &str, power: i32) -> Option<f64> {
+    let plain = number.replacen(',', ".", 1);
+    if plain.contains(',') || plain == "." {
+        return None;
+    }
+    let (mantissa, exponent) = plain.split_once(['e', 'E']).unwrap_or((&plain, "0"));
+    let exponent: i32 = exponent.parse().ok()?;
+    format!("{mantissa}e{}", exponent.checked_add(power)?).parse().ok()
+}
+
+impl fmt::Display for SpectralChannel {
+    /// The name of the channel, in nm to six decimals, as the layout's reference writes it.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let wave = |nm: f64| format!("{nm:.6}nm").replace('.', ",");
+        match *self {
+            Self::Radiance { stokes, nm } => write!(f, "S{stokes}.{}", wave(nm)),
+            Self::Reflectance { nm } => write!(f, "T.{}", wave(nm)),
+            Self::Reradiation { in_nm, out_nm } => write!(f, "T.{}.{}", wave(in_nm), wave(out_nm)),
+        }
+    }
+}
+
+/// The attribute that says which version of the layout a file follows.
+pub const LAYOUT_VERSION: &str = "spectralLayoutVersion";
+/// The version that this program reads and writes.
+pub const LAYOUT_VERSION_VALUE: &str = "1.0";
+/// The attribute that says the unit of `S0.` channels.
+pub const EMISSIVE_UNITS: &str = "emissiveUnits";
+/// Our attribute that says what re-radiation channels hold: the layout itself does not.
+pub const BISPECTRAL_UNIT: &str = "upglow.bispectralUnit";
+
+/// What a re-radiation channel holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BispectralUnit {
+    /// Share of the incident power that leaves within the band of the outgoing wavelength.
+    PerBand,
+    /// Share of the incident power that leaves per nanometer at the outgoing wavelength.
+    PerNm,
+}
+
+impl BispectralUnit {
+    /// The value of [`BISPECTRAL_UNIT`] in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::PerBand => "per band",
+            Self::PerNm => "per nm",
+        }
+    }
+
+    /// The unit of this name, if it is one.
+    pub fn named(name: &str) -> Option<Self> {
+        [Self::PerBand, Self::PerNm].into_iter().find(|unit| unit.name() == name)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn read(name: &str) -> Result<SpectralChannel, SpectralNameError> {
+        name.parse()
+    }
+
+    #[test]
+    fn names_of_other_programs_are_read_by_number() {
+        for name in
+            ["T.550,000000nm", "T.550,000nm", "T.550nm", "T.5,5e2nm", "T.0,55um", "T.55e1nm"]
+        {
+            assert_eq!(read(name), Ok(SpectralChannel::Reflectance { nm: 550.0 }), "{name}");
+        }
+        let stokes = read("S2.0,0000005m").unwrap();
+        assert_eq!(stokes, SpectralChannel::Radiance { stokes: 2, nm: 500.0 });
+        let Ok(SpectralChannel::Radiance { stokes: 0, nm }) = read("S0.600THz") else { panic!() };
+        assert!((nm - 499.654_096_7).abs() < 1e-6, "{nm}");
+        let pair = read("T.380,000000nm.390,000000nm");
+        assert_eq!(pair, Ok(SpectralChannel::Reradiation { in_nm: 380.0, out_nm: 390.0 }));
+    }
+
+    #[test]
+    fn broken_names_are_refused_with_their_fault() {
+        use SpectralNameError as E;
+        assert!(matches!(read("T.nm"), Err(E::NoNumber { .. })));
+        assert!(matches!(read("T."), Err(E::NoNumber { .. })));
+        assert!(matches!(read("S0.Hz"), Err(E::NoNumber { .. })));
+        assert!(matches!(read("T.550.5nm"), Err(E::DecimalPoint { .. })));
+        assert!(matches!(read("T.550.000000nm.560.000000nm"), Err(E::DecimalPoint { .. })));
+        assert!(matches!(read("T.550"), Err(E::Unit { .. })));
+        assert!(matches!(read("T.550qm"), Err(E::Unit { .. })));
+        assert!(matches!(read("T.5,5,0nm"), Err(E::Number { .. })));
+        assert!(matches!(read("T.,nm"), Err(E::Number { .. })));
+        assert!(matches!(read("T.0nm"), Err(E::Number { .. })));
+        assert!(matches!(read("T.1e400nm"), Err(E::Number { .. })));
+        assert!(matches!(read("S0.400nm.500nm"), Err(E::Count { .. })));
+        assert!(matches!(read("T.400nm.500nm.600nm"), Err(E::Count { .. })));
+        assert!(matches!(read("R"), Err(E::NotSpectral { .. })));
+        assert!(matches!(read("S0.T.550nm"), Err(E::NoNumber { .. })));
+        assert!(matches!(read("S4.550nm"), Err(E::NotSpectral { .. })));
+    }
+
+    proptest! {
+        #[test]
+        fn names_survive_printing(micro in 1_u32..4_000_000_000, other in 1_u32..4_000_000_000, stokes in 0_u8..4) {
+            let nm = |n: u32| f64::from(n) / 1e6;
+            for channel in [
+                SpectralChannel::Reflectance { nm: nm(micro) },
+                SpectralChannel::Radiance { stokes, nm: nm(micro) },
+                SpectralChannel::Reradiation { in_nm: nm(micro), out_nm: nm(other) },
+            ] {
+                prop_assert_eq!(read(&channel.to_string()), Ok(channel));
+            }
+        }
+
+        #[test]
+        fn no_name_panics(name in "(S0|T|S3)?\\.?[0-9,.eE+nmHzTkd-]{0,20}") {
+            if let Ok(channel) = read(&name) {
+                prop_assert!(channel.outgoing_nm() > 0.0);
+            }
+        }
+
+        #[test]
+        fn no_text_panics(name in ".{0,30}") {
+            let _ = read(&name);
+        }
+    }
+}

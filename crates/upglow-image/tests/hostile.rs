@@ -1,0 +1,231 @@
+//! No file makes a reader panic: cut, altered and invented ones get one clear line.
+
+#![expect(clippy::unwrap_used, reason = "a test fails where its files cannot be made")]
+
+use std::path::{Path, PathBuf};
+
+use exr::prelude::{
+    AnyChannel, AnyChannels, Blocks, Compression, Encoding, FlatSamples, Image, Layer,
+    LayerAttributes, LineOrder, Vec2, WritableImage as _, f16,
+};
+use upglow_image::{Depth, ExrDescription, ExrWriter, Picture, SpectralPicture, lint};
+
+const SIZE: [usize; 2] = [40, 37];
+
+fn value(x: usize, y: usize, c: usize) -> f32 {
+    ((x * 5 + y * 11 + c * 3) % 97) as f32 / 97.0
+}
+
+fn exr_file(folder: &Path, compression: Compression, blocks: Blocks) -> Vec<u8> {
+    let path = folder.join("seed.exr");
+    let channel = |name: &str, c: usize| {
+        let pixels = (0..SIZE[0] * SIZE[1]).map(|i| value(i % SIZE[0], i / SIZE[0], c));
+        let samples = if c == 0 {
+            FlatSamples::F32(pixels.collect())
+        } else {
+            FlatSamples::F16(pixels.map(f16::from_f32).collect())
+        };
+        AnyChannel::new(name, samples)
+    };
+    let names = ["B", "G", "R", "T.400,000000nm", "T.400,000000nm.410,000000nm", "T.410,000000nm"];
+    let list = names.iter().enumerate().map(|(c, name)| channel(name, c)).collect();
+    let encoding = Encoding { compression, blocks, line_order: LineOrder::Increasing };
+    let layer = Layer::new(
+        (SIZE[0], SIZE[1]),
+        LayerAttributes::named("main"),
+        encoding,
+        AnyChannels::sort(list),
+    );
+    Image::from_layer(layer).write().to_file(&path).unwrap();
+    std::fs::read(path).unwrap()
+}
+
+fn png_file(folder: &Path, interlaced: bool) -> Vec<u8> {
+    if interlaced {
+        return include_bytes!("data/interlaced.png").to_vec();
+    }
+    let path = folder.join("seed.png");
+    let file = std::fs::File::create(&path).unwrap();
+    let mut encoder = png::Encoder::new(file, 40, 37);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Sixteen);
+    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+    let mut writer = encoder.write_header().unwrap();
+    let bytes: Vec<u8> = (0..=250).cycle().take(40 * 37 * 6).collect();
+    writer.write_image_data(&bytes).unwrap();
+    drop(writer);
+    std::fs::read(path).unwrap()
+}
+
+fn tiff_file(folder: &Path, compression: tiff::encoder::Compression) -> Vec<u8> {
+    use tiff::encoder::{TiffEncoder, colortype};
+    let path = folder.join("seed.tif");
+    let file = std::fs::File::create(&path).unwrap();
+    let mut encoder = TiffEncoder::new(file).unwrap().with_compression(compression);
+    let samples: Vec<u16> = (0..40 * 37 * 3_u16).collect();
+    encoder.write_image::<colortype::RGB16>(40, 37, &samples).unwrap();
+    std::fs::read(path).unwrap()
+}
+
+fn seeds(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let mut seeds = Vec::new();
+    for compression in [
+        Compression::Uncompressed,
+        Compression::RLE,
+        Compression::ZIP1,
+        Compression::ZIP16,
+        Compression::PIZ,
+        Compression::PXR24,
+        Compression::B44,
+        Compression::B44A,
+        Compression::DWAA(None),
+        Compression::DWAB(None),
+    ] {
+        for blocks in [Blocks::ScanLines, Blocks::Tiles(Vec2(16, 16))] {
+            let name = format!("{compression:?} {blocks:?}");
+            seeds.push((name, exr_file(folder, compression, blocks)));
+        }
+    }
+    seeds.push(("png".into(), png_file(folder, false)));
+    seeds.push(("interlaced png".into(), png_file(folder, true)));
+    for (name, compression) in [
+        ("plain", tiff::encoder::Compression::Uncompressed),
+        ("lzw", tiff::encoder::Compression::Lzw),
+        ("deflate", tiff::encoder::Compression::Deflate(Default::default())),
+        ("packbits", tiff::encoder::Compression::Packbits),
+    ] {
+        seeds.push((format!("{name} tiff"), tiff_file(folder, compression)));
+    }
+    seeds
+}
+
+/// Reads all that there is, by every reader; the first error as a line.
+fn read_all(path: &Path) -> Result<(), String> {
+    let line = |error: &dyn std::fmt::Display| error.to_string();
+    let mut picture = Picture::open(path).map_err(|e| line(&e))?;
+    for band in picture.bands(16) {
+        band.map_err(|e| line(&e))?;
+    }
+    if std::fs::read(path).unwrap().starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
+        lint(path, Depth::Pixels).map_err(|e| line(&e))?;
+        let mut picture = SpectralPicture::open(path).map_err(|e| line(&e))?;
+        picture.at(SIZE[0] / 2, SIZE[1] / 2).map_err(|e| line(&e))?;
+    }
+    Ok(())
+}
+
+fn check(path: &Path, name: &str, bytes: &[u8]) -> Result<(), String> {
+    std::fs::write(path, bytes).unwrap();
+    let result = std::panic::catch_unwind(|| read_all(path));
+    let Ok(result) = result else {
+        let kept = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("panicked");
+        std::fs::write(&kept, bytes).unwrap();
+        panic!("{name}: a reader panicked, see {}", kept.display());
+    };
+    if let Err(message) = &result {
+        assert!(!message.contains('\n') && message.len() < 400, "{name}: {message:?}");
+    }
+    result
+}
+
+#[test]
+fn whole_files_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, bytes) in seeds(folder.path()) {
+        assert_eq!(check(&folder.path().join("x"), &name, &bytes), Ok(()), "{name}");
+    }
+}
+
+#[test]
+fn a_file_cut_short_anywhere_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, bytes) in seeds(folder.path()) {
+        // Every byte of one header of each format, of the others now and then.
+        let step = if name.contains("Tiles") || name.contains('(') { 41 } else { 1 };
+        let lengths = (0..bytes.len().min(400)).step_by(step);
+        let lengths = lengths.chain((400..bytes.len()).step_by(211));
+        for length in lengths {
+            let result = check(&folder.path().join("x"), &name, &bytes[..length]);
+            // What follows the last block of an interlaced PNG may go unread.
+            let tail = name.contains("png") && length + 64 > bytes.len();
+            let message = result.err().or(tail.then(String::new));
+            assert!(message.is_some(), "{name} cut at {length} of {}", bytes.len());
+        }
+    }
+}
+
+/// A generator of the xorshift kind: the same files in every run.
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, end: usize) -> usize {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        usize::try_from(self.0 % end as u64).unwrap()
+    }
+
+    fn byte(&mut self) -> u8 {
+        u8::try_from(self.below(256)).unwrap()
+    }
+}
+
+fn altered_files_panic_nowhere(rounds: usize) {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, bytes) in seeds(folder.path()) {
+        for round in 0..rounds {
+            let mut random = Random(0x9e37_79b9_7f4a_7c15 ^ (round as u64 + 1));
+            let mut altered = bytes.clone();
+            // Half the rounds hit the header, where sizes and places are.
+            let end = if round % 2 == 0 { altered.len().min(600) } else { altered.len() };
+            for _ in 0..1 + random.below(4) {
+                let at = random.below(end);
+                altered[at] = if random.below(3) == 0 { 0xff } else { random.byte() };
+            }
+            let _ = check(&folder.path().join("x"), &name, &altered);
+        }
+    }
+}
+
+#[test]
+fn altered_bytes_panic_nowhere() {
+    altered_files_panic_nowhere(40);
+}
+
+#[test]
+#[ignore = "slow: an hour"]
+fn slow_altered_bytes_panic_nowhere() {
+    altered_files_panic_nowhere(3000);
+}
+
+#[test]
+fn noise_and_absent_files_are_refused_by_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("x");
+    let message = |bytes: &[u8]| check(&path, "noise", bytes).unwrap_err();
+    assert_eq!(
+        message(b"P6 640 480"),
+        "the file begins with [50, 36, 20, 36], expected an OpenEXR, TIFF or PNG picture"
+    );
+    assert!(message(b"").starts_with("the file begins with [], expected"));
+    assert!(read_all(&folder.path().join("absent")).is_err());
+}
+
+#[test]
+fn a_table_that_the_file_cannot_hold_is_refused_before_it_is_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("x");
+    let description = ExrDescription::new([100_000, 100_000], ["R", "G", "B"]);
+    drop(ExrWriter::create(&path, description).unwrap());
+    // The data window of a small file, stretched.
+    let mut bytes = exr_file(folder.path(), Compression::ZIP16, Blocks::ScanLines);
+    let at = bytes.windows(10).position(|w| w == b"dataWindow").unwrap() + 10 + 1 + 6 + 4;
+    bytes[at + 8..at + 12].copy_from_slice(&99_999_i32.to_le_bytes());
+    bytes[at + 12..at + 16].copy_from_slice(&99_999_i32.to_le_bytes());
+    let message = check(&path, "stretched", &bytes).unwrap_err();
+    assert_eq!(message, "chunkCount is 3, expected at least 6250");
+    let name = bytes.windows(10).position(|w| w == b"chunkCount").unwrap();
+    bytes[name] = b'C';
+    let message = check(&path, "stretched", &bytes).unwrap_err();
+    assert!(message.starts_with("the file ends inside the table of 6250 blocks"), "{message}");
+}

@@ -1,0 +1,224 @@
+//! Spectral files: written, linted, read texel by texel, and checked by other programs.
+
+#![expect(clippy::unwrap_used, reason = "a test fails where its files cannot be made")]
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use upglow::{DyeModel, DyeOptions, DyeSet, Fluorescence, Material, Mixture, Model, Sigmoid};
+use upglow_color::Grid;
+use upglow_image::{
+    Attributes, BISPECTRAL_UNIT, BispectralUnit, CompactForm, CompactLayout, Depth, EMISSIVE_UNITS,
+    ExrDescription, ExrWriter, LAYOUT_VERSION, LAYOUT_VERSION_VALUE, Rule, Sample, Severity,
+    SpectralChannel, SpectralPicture, lint,
+};
+
+const SIZE: [usize; 2] = [3, 2];
+
+fn write(path: &Path, names: &[String], attributes: Attributes, texels: &[Vec<f32>]) {
+    let described = ExrDescription {
+        sample: Sample::Float,
+        attributes,
+        ..ExrDescription::new(SIZE, names.iter().cloned())
+    };
+    let mut writer = ExrWriter::create(path, described).unwrap();
+    let plane = |c: usize| texels.iter().map(|texel| texel[c]).collect::<Vec<_>>();
+    let planes: Vec<Vec<f32>> = (0..names.len()).map(plane).collect();
+    writer.write_band(&planes.iter().map(Vec::as_slice).collect::<Vec<_>>()).unwrap();
+    writer.finish().unwrap();
+}
+
+fn layout_attributes() -> Attributes {
+    Attributes::from([
+        (LAYOUT_VERSION.into(), LAYOUT_VERSION_VALUE.into()),
+        (BISPECTRAL_UNIT.into(), BispectralUnit::PerBand.name().into()),
+    ])
+}
+
+fn names_of(bands: Grid) -> Vec<String> {
+    let nm: Vec<f64> = bands.wavelengths_nm().collect();
+    let mut names: Vec<String> = ["R", "G", "B"].map(String::from).to_vec();
+    names.extend(nm.iter().map(|&nm| SpectralChannel::Reflectance { nm }.to_string()));
+    for (i, &in_nm) in nm.iter().enumerate() {
+        for &out_nm in &nm[i + 1..] {
+            names.push(SpectralChannel::Reradiation { in_nm, out_nm }.to_string());
+        }
+    }
+    names
+}
+
+fn model() -> DyeModel {
+    DyeModel::new(DyeSet::named("seed8").unwrap(), DyeOptions::default()).unwrap()
+}
+
+fn material(i: usize) -> Material {
+    let u = i as f64 / 6.0;
+    let fluorescence = Fluorescence::Dyes { first: i, weight: u, concentration: 0.3 + 0.5 * u };
+    Material { reflectance: Sigmoid::flat(0.2 + 0.5 * u), fluorescence }
+}
+
+/// A full bispectral file and a compact one of the same six texels, with preview.
+fn full_and_compact(folder: &Path, bands: Grid) -> [PathBuf; 2] {
+    let dyes = model();
+    let layout = CompactLayout::new(&dyes, bands, CompactForm::PerDye).unwrap();
+    let model = Model::Dyes(dyes);
+    let preview = [0.25, 0.5, 0.75];
+    let texel = |i: usize| {
+        let compact = layout.encode(&Mixture::of(&model, material(i))).unwrap();
+        let matrix = layout.expand(&compact).unwrap();
+        let diagonal = (0..bands.len()).map(|b| matrix.shares[b][b]).collect::<Vec<_>>();
+        let pairs = matrix.pairs().map(|(.., share)| share).collect::<Vec<_>>();
+        let full = [&preview[..], &diagonal, &pairs].concat();
+        [full, [&preview[..], &compact].concat()]
+    };
+    let texels: Vec<[Vec<f32>; 2]> = (0..6).map(texel).collect();
+    let paths = ["full.exr", "compact.exr"].map(|name| folder.join(name));
+    let of = |k: usize| texels.iter().map(|t| t[k].clone()).collect::<Vec<_>>();
+    write(&paths[0], &names_of(bands), layout_attributes(), &of(0));
+    let mut names: Vec<String> = ["R", "G", "B"].map(String::from).to_vec();
+    names.extend(layout.channel_names());
+    let mut attributes = layout_attributes();
+    attributes.extend(layout.attributes());
+    write(&paths[1], &names, attributes, &of(1));
+    paths
+}
+
+#[test]
+fn a_compact_file_reads_as_the_full_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let bands = Grid::try_new(380, 780, 10).unwrap();
+    let paths = full_and_compact(folder.path(), bands);
+    for path in &paths {
+        let found = lint(path, Depth::Pixels).unwrap();
+        assert_eq!(found.findings, [], "{}", path.display());
+        assert!(found.is_well_formed());
+    }
+    let [mut full, mut compact] = paths.map(|path| SpectralPicture::open(&path).unwrap());
+    assert_eq!(full.channels().len(), 41 + 820);
+    assert_eq!(compact.channels().len(), 41);
+    assert_eq!(compact.bispectral_unit(), Some(BispectralUnit::PerBand));
+    for y in 0..SIZE[1] {
+        for x in 0..SIZE[0] {
+            assert_eq!(full.at(x, y).unwrap(), compact.at(x, y).unwrap());
+        }
+    }
+    let texel = full.at(2, 1).unwrap();
+    assert!(texel.reradiation.iter().any(|r| r.value > 0.01));
+    assert!(texel.reflectance.is_sorted_by(|a, b| a.0 < b.0));
+    assert_eq!(texel.preview, Some([0.25, 0.5, 0.75]));
+    let outside = full.at(3, 0).unwrap_err().to_string();
+    assert_eq!(outside, "columns [3, 4] of rows [0, 1], expected some inside 3 by 2");
+}
+
+/// What a linter finds in a file of these channels, all samples `value`.
+fn findings(names: &[&str], attributes: Attributes, value: f32) -> Vec<(Rule, Severity, String)> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("x.exr");
+    let names: Vec<String> = names.iter().map(|&n| n.into()).collect();
+    write(&path, &names, attributes, &vec![vec![value; names.len()]; 6]);
+    let found = lint(&path, Depth::Pixels).unwrap();
+    found.findings.into_iter().map(|f| (f.rule, f.severity, f.to_string())).collect()
+}
+
+fn rules(names: &[&str], value: f32) -> Vec<Rule> {
+    let names = [names, &["R", "G", "B"]].concat();
+    findings(&names, layout_attributes(), value).into_iter().map(|(rule, ..)| rule).collect()
+}
+
+#[test]
+fn the_linter_finds_each_fault_and_no_other() {
+    let pair = ["T.400nm", "T.410nm", "T.400nm.410nm"];
+    assert_eq!(rules(&pair, 0.25), []);
+    assert_eq!(rules(&["T.400nm", "T.410.5nm"], 0.25), [Rule::Name]);
+    assert_eq!(rules(&["T.400nm", "T.nm"], 0.25), [Rule::Name]);
+    assert_eq!(rules(&["T.400nm", "T.400lightyears"], 0.25), [Rule::Name]);
+    assert_eq!(rules(&["T.400nm", "T.400nm.400nm"], 0.25), [Rule::Diagonal]);
+    let below = [&pair[..], &["T.410nm.400nm"]].concat();
+    assert_eq!(rules(&below, 0.25), [Rule::Stokes]);
+    assert_eq!(rules(&["T.400nm", "T.400,000nm"], 0.25), [Rule::Duplicate]);
+    assert_eq!(rules(&["T.400nm", "T.0,5um"], 0.25), [Rule::Units]);
+    assert_eq!(rules(&["T.400nm", "T.410nm", "T.420nm", "T.400nm.410nm"], 0.25), [Rule::Pairs]);
+    assert_eq!(rules(&["T.400nm", "T.400nm.410nm"], 0.25), [Rule::Band]);
+    assert_eq!(rules(&["S0.400nm", "S1.410nm"], 0.25), [Rule::EmissiveUnits, Rule::Polarization]);
+    assert_eq!(rules(&[], 0.25), [Rule::Spectral]);
+    assert_eq!(rules(&pair, f32::NAN), [Rule::Finite]);
+    assert_eq!(rules(&pair, -0.25), [Rule::Negative]);
+    assert_eq!(rules(&pair, 0.75), [Rule::Energy]);
+    assert_eq!(rules(&["S0.400nm"], 7.0), [Rule::EmissiveUnits]);
+}
+
+#[test]
+fn attributes_are_linted_too() {
+    let names = ["T.400nm", "T.410nm", "T.400nm.410nm"];
+    let found = findings(&names, Attributes::new(), 0.6);
+    let found: Vec<_> = found.iter().map(|(rule, severity, _)| (*rule, *severity)).collect();
+    // Without a unit the pair is not added to the diagonal, which is below 1.
+    assert_eq!(
+        found,
+        [
+            (Rule::LayoutVersion, Severity::Error),
+            (Rule::BispectralUnit, Severity::Warning),
+            (Rule::Preview, Severity::Warning),
+        ]
+    );
+    let mut attributes = layout_attributes();
+    attributes.insert(BISPECTRAL_UNIT.into(), BispectralUnit::PerNm.name().into());
+    let bright = findings(&names, attributes, 0.6);
+    assert!(bright.iter().any(|(rule, ..)| *rule == Rule::Energy), "{bright:?}");
+    let mut attributes = layout_attributes();
+    attributes.insert(LAYOUT_VERSION.into(), "2.0".into());
+    attributes.insert(EMISSIVE_UNITS.into(), "W.m^-2.sr^-1".into());
+    let found = findings(&["S0.400nm", "R", "G", "B"], attributes, 0.5);
+    assert_eq!(found[0].2, "error: spectralLayoutVersion \"2.0\", expected \"1.0\"");
+    assert_eq!(found.len(), 1);
+}
+
+/// The interpreter with the packages that check our files, if there is one.
+fn python() -> Option<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let candidates = [
+        std::env::var_os("UPGLOW_PYTHON").map(PathBuf::from),
+        Some(root.join("target/python/bin/python")),
+        Some("python3".into()),
+    ];
+    let can_import = |python: &PathBuf| {
+        let mut command = Command::new(python);
+        command.args(["-c", "import OpenEXR, numpy"]).output().is_ok_and(|o| o.status.success())
+    };
+    candidates.into_iter().flatten().find(can_import)
+}
+
+#[test]
+fn other_programs_read_our_files() {
+    let Some(python) = python() else {
+        println!("skipped: other_programs_read_our_files, no python3 with OpenEXR and numpy");
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let bands = Grid::try_new(380, 780, 50).unwrap();
+    let [full, compact] = full_and_compact(folder.path(), bands);
+    // The values that other programs should see.
+    let mut picture = SpectralPicture::open(&full).unwrap();
+    let mut expected = String::new();
+    for y in 0..SIZE[1] {
+        for x in 0..SIZE[0] {
+            let texel = picture.at(x, y).unwrap();
+            for (nm, value) in texel.reflectance {
+                let name = SpectralChannel::Reflectance { nm };
+                expected += &format!("{x} {y} {name} {value}\n");
+            }
+            for r in texel.reradiation {
+                let name = SpectralChannel::Reradiation { in_nm: r.in_nm, out_nm: r.out_nm };
+                expected += &format!("{x} {y} {name} {}\n", r.value);
+            }
+        }
+    }
+    let list = folder.path().join("expected.txt");
+    std::fs::write(&list, expected).unwrap();
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/readers/check_exr.py");
+    let output = Command::new(python).arg(script).args([&full, &compact, &list]).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stdout);
+    let failed = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}{failed}");
+    print!("{said}");
+}
