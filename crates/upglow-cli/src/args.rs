@@ -1,14 +1,20 @@
 //! What was typed.
 
+mod pictures;
+
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::{Parser, Subcommand};
-use upglow::{Accounting, Cube, Interpolation, Mixing, QuantumYield};
+use upglow::{Accounting, CoefficientTable, Cube, Interpolation, Mixing, QuantumYield};
 use upglow_color::{Adaptation, Metric};
 use upglow_fit::Method;
 use upglow_study::Display;
+
+pub(crate) use pictures::{
+    BakeArgs, BakeForm, CheckArgs, ExamplesArgs, LintArgs, PictureArgs, ReadArgs, SampleName,
+};
 
 /// RGB colors to physically valid spectral materials, with fluorescence where no reflectance shows
 /// the color.
@@ -29,14 +35,25 @@ pub(crate) struct Args {
 pub(crate) enum Command {
     /// Fit a material for every node of a grid over RGB, and write them as one file
     Build(Box<BuildArgs>),
-    /// Show what a cube is made of and how well its nodes match their colors
+    /// Show what a cube, or a table of coefficients, is made of and how well it matches its colors
     Inspect(InspectArgs),
     /// Recompute everything from a cube's numbers; exit 1 if a physical law is broken
     Verify(VerifyArgs),
     /// Show the material of one color
     Color(ColorArgs),
-    /// Write every node as a line of a CSV file
+    /// Write a cube for other programs: CSV, or a table of coefficients that renderers read
     Export(ExportArgs),
+    /// Turn pictures into spectral materials: EXR, TIFF or PNG in, EXR out
+    Bake(Box<BakeArgs>),
+    /// Say which texels of pictures a reflectance shows, which need fluorescence, which nothing
+    /// shows
+    Check(CheckArgs),
+    /// Show the spectrum of one texel of a spectral or bispectral EXR
+    Read(ReadArgs),
+    /// Say whether files are well-formed spectral or bispectral EXR, and what is wrong
+    Lint(LintArgs),
+    /// Draw three pictures to try the other commands with
+    Examples(ExamplesArgs),
     /// Draw the seed paper's eight figures from real computation, and two of ours; minutes
     Figures(FiguresArgs),
     /// Measure the seed paper's claims and print a report in Markdown; minutes
@@ -143,8 +160,14 @@ pub(crate) struct BuildArgs {
 
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct InspectArgs {
-    /// Cube made by `upglow build`
+    /// Cube made by `upglow build`, or a table of coefficients of any program (.coeff)
     pub(crate) file: PathBuf,
+    /// RGB space of a table of coefficients, which does not name it
+    #[arg(long)]
+    pub(crate) space: Option<String>,
+    /// Light of a table of coefficients: D65, D60, D55, D50, A, E, or a CSV file [default: D65]
+    #[arg(long, value_name = "NAME|FILE")]
+    pub(crate) illuminant: Option<String>,
 }
 
 #[derive(Clone, Debug, clap::Args)]
@@ -197,9 +220,53 @@ pub(crate) struct ColorArgs {
 pub(crate) struct ExportArgs {
     /// Cube made by `upglow build`
     pub(crate) file: PathBuf,
-    /// CSV file to write
-    #[arg(value_name = "NODES.csv")]
+    /// File to write
     pub(crate) output: PathBuf,
+    /// csv (every node a line) or coeff (reflectances only, for Mitsuba 3, pbrt-v4, colour-science)
+    /// [default: as the output is named]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) format: Option<ExportFormat>,
+    /// Nodes along each axis of a coeff table, 2 to 128 [default: 64]
+    #[arg(long, value_name = "N", value_parser = table_resolution)]
+    pub(crate) resolution: Option<usize>,
+    /// Threads; the file does not depend on it [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = threads)]
+    pub(crate) threads: Option<NonZeroUsize>,
+}
+
+/// The kinds of exported file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ExportFormat {
+    Csv,
+    Coeff,
+}
+
+impl ExportFormat {
+    pub(crate) const ALL: [Self; 2] = [Self::Csv, Self::Coeff];
+
+    /// The word that is typed, and the suffix of the files.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Csv => "csv",
+            Self::Coeff => "coeff",
+        }
+    }
+}
+
+impl FromStr for ExportFormat {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, Self::Err> {
+        named("format", &Self::ALL.map(|format| (format.name(), format)), name)
+    }
+}
+
+/// The value of a word, or what was expected.
+fn named<T: Copy>(what: &str, known: &[(&str, T)], name: &str) -> Result<T, String> {
+    known.iter().find(|(word, _)| *word == name).map(|(_, value)| *value).ok_or_else(|| {
+        let words: Vec<&str> = known.iter().map(|(word, _)| *word).collect();
+        format!("unknown {what} {name:?}, expected {}", words.join(" or "))
+    })
 }
 
 /// The kinds of model.
@@ -273,7 +340,14 @@ fn points(text: &str) -> Result<usize, String> {
 }
 
 fn resolution(text: &str) -> Result<usize, String> {
-    let [least, most] = Cube::RESOLUTIONS;
+    in_range(Cube::RESOLUTIONS, text)
+}
+
+fn table_resolution(text: &str) -> Result<usize, String> {
+    in_range(CoefficientTable::RESOLUTIONS, text)
+}
+
+fn in_range([least, most]: [usize; 2], text: &str) -> Result<usize, String> {
     let expected = format!("a whole number from {least} to {most}");
     let found = whole(text, &expected)?;
     if (least..=most).contains(&found) {

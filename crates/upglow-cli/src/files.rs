@@ -70,7 +70,7 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
             format_args!(
                 "{}, expected room for {} and the right to write",
                 io_message(&error),
-                size(bytes.len())
+                size(bytes.len() as u64)
             ),
         ),
         WriteCubeError::NotAFile { .. } => {
@@ -80,13 +80,22 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     })
 }
 
+/// Makes a folder and those above it, where they are not there.
+pub(crate) fn make_folder(path: &Path) -> Result<(), Failure> {
+    std::fs::create_dir_all(path).map_err(|error| {
+        let found = io_message(&error);
+        Failure::file(path, format_args!("{found}, expected a folder to write in"))
+    })
+}
+
 /// A number of bytes for people: 1.23 MB.
-pub(crate) fn size(bytes: usize) -> String {
+pub(crate) fn size(bytes: u64) -> String {
     let bytes = bytes as f64;
     match bytes {
         b if b < 1e3 => format!("{b} bytes"),
         b if b < 1e6 => format!("{:.1} kB", b / 1e3),
-        b => format!("{:.2} MB", b / 1e6),
+        b if b < 1e9 => format!("{:.2} MB", b / 1e6),
+        b => format!("{:.2} GB", b / 1e9),
     }
 }
 

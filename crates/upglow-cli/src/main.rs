@@ -8,6 +8,7 @@ mod commands;
 mod failure;
 mod files;
 mod output;
+mod pictures;
 mod plan;
 mod plot;
 mod progress;

@@ -30,7 +30,7 @@ impl BuildPlan {
     pub(crate) fn new(args: &BuildArgs) -> Result<Self, Failure> {
         let contract = Contract {
             space: space(&args.space)?,
-            illuminant: illuminant(&args.illuminant)?,
+            illuminant: light("--illuminant", &args.illuminant)?,
             observer: Observer::default(),
             adaptation: args.adapt,
         };
@@ -55,7 +55,7 @@ impl BuildPlan {
     }
 }
 
-fn space(text: &str) -> Result<RgbSpace, Failure> {
+pub(crate) fn space(text: &str) -> Result<RgbSpace, Failure> {
     let refused = |error| Failure::option("--space", error);
     let numbers: Option<Vec<f64>> = text.split(',').map(|cell| cell.trim().parse().ok()).collect();
     match numbers.as_deref() {
@@ -66,7 +66,8 @@ fn space(text: &str) -> Result<RgbSpace, Failure> {
     }
 }
 
-fn illuminant(text: &str) -> Result<Illuminant, Failure> {
+/// A light by name or file, given with `option`.
+pub(crate) fn light(option: &'static str, text: &str) -> Result<Illuminant, Failure> {
     let path = Path::new(text);
     match Illuminant::named(text) {
         Err(_) if is_path(path) => {
@@ -74,7 +75,7 @@ fn illuminant(text: &str) -> Result<Illuminant, Failure> {
             let name = path.file_stem().map(|stem| stem.to_string_lossy()).unwrap_or_default();
             Illuminant::from_csv(&name, &text).map_err(|error| Failure::file(path, error))
         }
-        named => named.map_err(|error: IlluminantError| Failure::option("--illuminant", error)),
+        named => named.map_err(|error: IlluminantError| Failure::option(option, error)),
     }
 }
 

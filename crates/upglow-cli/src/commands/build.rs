@@ -18,7 +18,7 @@ use crate::progress::Bar;
 #[derive(Clone, Debug, Serialize)]
 struct BuildReport {
     file: String,
-    bytes: usize,
+    bytes: u64,
     resolution: usize,
     model: &'static str,
     time_s: f64,
@@ -47,7 +47,7 @@ pub(crate) fn run(args: &BuildArgs, format: Format, quiet: bool) -> Result<(), F
     files::write(&plan.output, &bytes)?;
     format.print(&BuildReport {
         file: plan.output.display().to_string(),
-        bytes: bytes.len(),
+        bytes: bytes.len() as u64,
         resolution: plan.resolution,
         model: plan.model.name(),
         time_s: start.elapsed().as_secs_f64(),

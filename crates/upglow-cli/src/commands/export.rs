@@ -1,14 +1,17 @@
-//! `upglow export`: every node as a line of a CSV file.
+//! `upglow export`: a cube for other programs.
 
 use std::fmt::Write as _;
 
 use serde::Serialize;
 use upglow::{Cube, Model, Node, Vertex};
+use upglow_fit::{BuildError, fit_coefficients};
 
-use crate::args::ExportArgs;
+use super::on_threads;
+use crate::args::{ExportArgs, ExportFormat};
 use crate::failure::Failure;
 use crate::files;
-use crate::output::{Format, Lines, Report, unsigned_zero};
+use crate::output::{Format, Lines, Report, unsigned_zero, warn};
+use crate::progress::Bar;
 
 const HEADER: &str = "r,g,b,c0,c1,c2,shift_nm,width_nm,slope_per_nm,dye_a,dye_b,weight,\
                       concentration,emission_peak_nm,stokes_shift_nm,de2000";
@@ -16,21 +19,66 @@ const HEADER: &str = "r,g,b,c0,c1,c2,shift_nm,width_nm,slope_per_nm,dye_a,dye_b,
 #[derive(Clone, Debug, Serialize)]
 struct ExportReport {
     file: String,
-    bytes: usize,
+    format: &'static str,
+    bytes: u64,
     nodes: usize,
 }
 
-pub(crate) fn run(args: &ExportArgs, format: Format) -> Result<(), Failure> {
+pub(crate) fn run(args: &ExportArgs, format: Format, quiet: bool) -> Result<(), Failure> {
+    let kind = kind(args)?;
     files::check_output(&args.output)?;
     files::check_distinct(&args.file, &args.output)?;
     let cube = files::read_cube(&args.file)?;
-    let text = csv(&cube);
-    files::write(&args.output, text.as_bytes())?;
+    let (bytes, nodes) = match kind {
+        ExportFormat::Csv => (csv(&cube).into_bytes(), cube.nodes().len()),
+        ExportFormat::Coeff => coeff(args, &cube, quiet)?,
+    };
+    files::write(&args.output, &bytes)?;
     format.print(&ExportReport {
         file: args.output.display().to_string(),
-        bytes: text.len(),
-        nodes: cube.nodes().len(),
+        format: kind.name(),
+        bytes: bytes.len() as u64,
+        nodes,
     })
+}
+
+/// The format that was named, or that the output's suffix names.
+fn kind(args: &ExportArgs) -> Result<ExportFormat, Failure> {
+    let suffix = args.output.extension().and_then(|suffix| suffix.to_str()).unwrap_or_default();
+    let by_suffix = ExportFormat::ALL.into_iter().find(|format| format.name() == suffix);
+    let kind = args.format.or(by_suffix).ok_or_else(|| {
+        let expected = "expected csv or coeff, or an output that ends so";
+        Failure::option("--format", format_args!("not given, {expected}"))
+    })?;
+    if kind != ExportFormat::Coeff && args.resolution.is_some() {
+        let found = kind.name();
+        return Err(Failure::option(
+            "--resolution",
+            format_args!("given with --format {found}, expected --format coeff"),
+        ));
+    }
+    Ok(kind)
+}
+
+/// The size of the tables that Mitsuba 3 and pbrt-v4 bring.
+const TABLE_RESOLUTION: usize = 64;
+
+/// A table of reflectances for the cube's RGB space, light and slope limit, and its nodes.
+fn coeff(args: &ExportArgs, cube: &Cube, quiet: bool) -> Result<(Vec<u8>, usize), Failure> {
+    if !matches!(cube.model(), Model::Reflectance) {
+        warn("a table of coefficients has no fluorescence: colors that need it come out duller");
+    }
+    let resolution = args.resolution.unwrap_or(TABLE_RESOLUTION);
+    let bar = Bar::start(quiet);
+    let fitted = on_threads(args.threads, || {
+        fit_coefficients(cube.contract(), cube.fit().slope_max_per_nm, resolution, &bar)
+    })?;
+    bar.finish();
+    let table = fitted.map_err(|error| match error {
+        BuildError::Stopped => Failure::Stopped,
+        error => Failure::file(&args.file, error),
+    })?;
+    Ok((table.to_bytes(), table.nodes().len()))
 }
 
 /// All nodes, red fastest. Numbers are printed with as many digits as lead back to them.
@@ -91,6 +139,7 @@ impl Report for ExportReport {
     fn text(&self) -> String {
         let mut lines = Lines::default();
         lines
+            .add("format", self.format)
             .add("nodes", self.nodes)
             .add("file", format_args!("{}, {}", self.file, files::size(self.bytes)));
         lines.to_string()

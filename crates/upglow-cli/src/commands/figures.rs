@@ -9,7 +9,7 @@ use upglow_study::{Cubes, Figure, FigureOptions, StudyError, figures};
 use super::on_threads;
 use super::study::study_failure;
 use crate::args::FiguresArgs;
-use crate::failure::{Failure, io_message};
+use crate::failure::Failure;
 use crate::files;
 use crate::output::{Format, Report};
 use crate::progress::Bar;
@@ -44,10 +44,7 @@ pub(crate) fn run(args: &FiguresArgs, format: Format, quiet: bool) -> Result<(),
         StudyError::UnknownFigure { .. } => Failure::option("--only", error),
         error => study_failure(error),
     })?;
-    std::fs::create_dir_all(&args.out).map_err(|error| {
-        let found = io_message(&error);
-        Failure::file(&args.out, format_args!("{found}, expected a folder to write in"))
-    })?;
+    files::make_folder(&args.out)?;
     let written = drawn.iter().map(|figure| write(args, figure)).collect::<Result<Vec<_>, _>>()?;
     let folder = args.out.display().to_string();
     format.print(&FiguresReport { folder, figures: written })

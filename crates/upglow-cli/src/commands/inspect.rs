@@ -3,6 +3,7 @@
 use serde::Serialize;
 use upglow::{AnalyticModel, Cube, DyeModel, Model};
 
+use super::inspect_table;
 use super::summary::SummaryReport;
 use crate::args::InspectArgs;
 use crate::failure::{Failure, io_message};
@@ -71,6 +72,14 @@ struct FitReport {
 }
 
 pub(crate) fn run(args: &InspectArgs, format: Format) -> Result<(), Failure> {
+    if inspect_table::is_table(&args.file) {
+        return inspect_table::run(args, format);
+    }
+    let given = [("--space", &args.space), ("--illuminant", &args.illuminant)];
+    if let Some((option, _)) = given.into_iter().find(|(_, value)| value.is_some()) {
+        let message = "given for a cube, which names its own; expected a table of coefficients";
+        return Err(Failure::option(option, message));
+    }
     let cube = files::read_cube(&args.file)?;
     let bytes =
         args.file.metadata().map_err(|error| Failure::file(&args.file, io_message(&error)))?.len();
@@ -200,11 +209,10 @@ impl Report for InspectReport {
         let contract = &self.contract;
         let [red, green, blue] = contract.primaries_xy.map(|[x, y]| format!("({x}, {y})"));
         let [x, y] = contract.white_xy;
-        let bytes = usize::try_from(self.bytes).unwrap_or(usize::MAX);
         let slope = self.fit.slope_max_per_nm.map_or("none".into(), |s| format!("{s} per nm"));
         let mut lines = Lines::default();
         lines
-            .add("file", format_args!("{}, {}", self.file, files::size(bytes)))
+            .add("file", format_args!("{}, {}", self.file, files::size(self.bytes)))
             .add("resolution", format_args!("{0} × {0} × {0}", self.resolution))
             .add("RGB space", &contract.rgb_space)
             .add("primaries", format_args!("red {red}, green {green}, blue {blue}"))

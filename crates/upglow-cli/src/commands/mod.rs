@@ -1,11 +1,17 @@
 //! The commands, one a file.
 
+mod bake;
 mod build;
+mod check;
 mod color;
 mod color_report;
+mod examples;
 mod export;
 mod figures;
 mod inspect;
+mod inspect_table;
+mod lint;
+mod read;
 mod reproduce;
 mod study;
 mod summary;
@@ -25,7 +31,12 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
         Command::Inspect(inspect) => inspect::run(&inspect, format),
         Command::Verify(verify) => verify::run(&verify, format, args.quiet),
         Command::Color(color) => color::run(&color, format),
-        Command::Export(export) => export::run(&export, format),
+        Command::Export(export) => export::run(&export, format, args.quiet),
+        Command::Bake(bake) => bake::run(&bake, format, args.quiet),
+        Command::Check(check) => check::run(&check, format, args.quiet),
+        Command::Read(read) => read::run(&read, format),
+        Command::Lint(lint) => lint::run(&lint, format),
+        Command::Examples(examples) => examples::run(&examples, format),
         Command::Figures(figures) => figures::run(&figures, format, args.quiet),
         Command::Reproduce(reproduce) => reproduce::run(&reproduce, format, args.quiet),
     }

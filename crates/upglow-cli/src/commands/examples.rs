@@ -1,0 +1,63 @@
+//! `upglow examples`: pictures to try the other commands with.
+
+use std::path::Path;
+
+use serde::Serialize;
+use upglow_color::RgbSpace;
+use upglow_image::{
+    EXAMPLE_PICTURES, ExamplePicture, ExrDescription, ExrWriter, WriteExrError, chromaticities,
+};
+
+use crate::args::ExamplesArgs;
+use crate::failure::Failure;
+use crate::files;
+use crate::output::{Format, Lines, Report};
+
+#[derive(Clone, Debug, Serialize)]
+struct ExamplesReport {
+    pictures: Vec<PictureReport>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct PictureReport {
+    file: String,
+    width: usize,
+    height: usize,
+    about: &'static str,
+}
+
+pub(crate) fn run(args: &ExamplesArgs, format: Format) -> Result<(), Failure> {
+    files::make_folder(&args.out)?;
+    let mut pictures = Vec::new();
+    for picture in EXAMPLE_PICTURES {
+        let path = args.out.join(format!("{}.exr", picture.name));
+        write(&path, &picture).map_err(|error| Failure::file(&path, error))?;
+        let [width, height] = picture.size;
+        let file = path.display().to_string();
+        pictures.push(PictureReport { file, width, height, about: picture.about });
+    }
+    format.print(&ExamplesReport { pictures })
+}
+
+fn write(path: &Path, picture: &ExamplePicture) -> Result<(), WriteExrError> {
+    let mut description = ExrDescription::new(picture.size, ["R", "G", "B"]);
+    let space = chromaticities(&RgbSpace::default());
+    description.attributes.insert("chromaticities".into(), space);
+    let mut writer = ExrWriter::create(path, description)?;
+    for y in 0..picture.size[1] {
+        let row = picture.row(y);
+        let planes = [0, 1, 2].map(|k| row.iter().map(|rgb| rgb[k]).collect::<Vec<_>>());
+        writer.write_band(&planes.each_ref().map(Vec::as_slice))?;
+    }
+    writer.finish().map(|_| ())
+}
+
+impl Report for ExamplesReport {
+    fn text(&self) -> String {
+        let mut lines = Lines::default();
+        for PictureReport { file, width, height, about } in &self.pictures {
+            lines.add(file, format_args!("{width} × {height}, {about}"));
+        }
+        lines.to_string()
+    }
+}

@@ -1,0 +1,88 @@
+//! `upglow inspect` of a table of coefficients, ours or another program's.
+
+use std::fs::File;
+use std::io::Read as _;
+use std::path::Path;
+
+use serde::Serialize;
+use upglow::CoefficientTable;
+use upglow_color::Contract;
+use upglow_fit::round_trip;
+
+use crate::args::InspectArgs;
+use crate::failure::{Failure, io_message};
+use crate::output::{Format, Lines, Report};
+use crate::{files, plan};
+
+/// Random colors of the round trip, and the number they start from.
+const POINTS: usize = 10_000;
+const SEED: u64 = 0;
+
+#[derive(Clone, Debug, Serialize)]
+struct TableReport {
+    file: String,
+    bytes: u64,
+    resolution: usize,
+    /// Whether it ends with weights that integrate a reflectance, as rgb2spec needs since 2026.
+    integrator: bool,
+    rgb_space: String,
+    illuminant: String,
+    points: usize,
+    mean_de2000: f64,
+    p95_de2000: f64,
+    max_de2000: f64,
+}
+
+/// Whether a file begins as tables of coefficients do.
+pub(super) fn is_table(path: &Path) -> bool {
+    let mut start = [0; 4];
+    File::open(path).and_then(|mut file| file.read_exact(&mut start)).is_ok() && &start == b"SPEC"
+}
+
+pub(super) fn run(args: &InspectArgs, format: Format) -> Result<(), Failure> {
+    let Some(space) = &args.space else {
+        let message = "not given, expected the RGB space of the table, which does not name it";
+        return Err(Failure::option("--space", message));
+    };
+    let mut contract = Contract { space: plan::space(space)?, ..Contract::default() };
+    if let Some(text) = &args.illuminant {
+        contract.illuminant = plan::light("--illuminant", text)?;
+    }
+    let bytes = std::fs::read(&args.file).map_err(|error| {
+        let found = io_message(&error);
+        Failure::file(&args.file, format_args!("{found}, expected a table of coefficients"))
+    })?;
+    let table = CoefficientTable::from_bytes(&bytes);
+    let table = table.map_err(|error| Failure::file(&args.file, error))?;
+    let spread = round_trip(&table, &contract, POINTS, SEED);
+    format.print(&TableReport {
+        file: args.file.display().to_string(),
+        bytes: bytes.len() as u64,
+        resolution: table.resolution(),
+        integrator: table.integrator().is_some(),
+        rgb_space: contract.space.name().into(),
+        illuminant: contract.illuminant.name().into(),
+        points: POINTS,
+        mean_de2000: spread.mean,
+        p95_de2000: spread.p95,
+        max_de2000: spread.max,
+    })
+}
+
+impl Report for TableReport {
+    fn text(&self) -> String {
+        let Self { resolution, points, mean_de2000, p95_de2000, max_de2000, .. } = self;
+        let mut lines = Lines::default();
+        lines
+            .add("file", format_args!("{}, {}", self.file, files::size(self.bytes)))
+            .add("kind", "table of coefficients, reflectance only")
+            .add("resolution", format_args!("3 × {resolution} × {resolution} × {resolution}"))
+            .add("integrator", if self.integrator { "yes" } else { "no" })
+            .add("judged as", format_args!("{} under {}", self.rgb_space, self.illuminant))
+            .add("round trip", format_args!("{points} random colors"))
+            .add("mean ΔE00", format_args!("{mean_de2000:.4}"))
+            .add("95 % within", format_args!("{p95_de2000:.4}"))
+            .add("greatest", format_args!("{max_de2000:.2}"));
+        lines.to_string()
+    }
+}

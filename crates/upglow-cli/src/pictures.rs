@@ -1,0 +1,144 @@
+//! Which pictures a command works on, and where what it makes of them goes.
+
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+
+use upglow_color::RgbSpace;
+use upglow_image::{Assumed, Encoding};
+
+use crate::args::PictureArgs;
+use crate::failure::{Failure, io_message};
+use crate::plan;
+
+/// Suffixes of the pictures that are taken from a folder.
+const SUFFIXES: [&str; 4] = ["exr", "tif", "tiff", "png"];
+
+/// What is taken for granted of pictures that do not say it themselves.
+pub(crate) fn assumed(args: &PictureArgs) -> Result<Assumed, Failure> {
+    let space: Option<RgbSpace> = args.space.as_deref().map(plan::space).transpose()?;
+    let encoding = args.encoding.as_deref().map(str::parse::<Encoding>).transpose();
+    let encoding = encoding.map_err(|error| Failure::option("--encoding", error))?;
+    Ok(Assumed { space, encoding })
+}
+
+/// The pictures that were named, and those in the folders that were named, sorted by name there.
+pub(crate) fn find(inputs: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
+    let mut found = Vec::new();
+    for input in inputs {
+        if !input.is_dir() {
+            found.push(input.clone());
+            continue;
+        }
+        let pictures = pictures_in(input)?;
+        if pictures.is_empty() {
+            let suffixes = SUFFIXES.join(", ");
+            return Err(Failure::file(
+                input,
+                format_args!("a folder without pictures, expected files that end in {suffixes}"),
+            ));
+        }
+        found.extend(pictures);
+    }
+    Ok(found)
+}
+
+fn pictures_in(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+    let unread = |error| {
+        Failure::file(folder, format_args!("{}, expected a folder of pictures", io_message(&error)))
+    };
+    let mut pictures = Vec::new();
+    for entry in folder.read_dir().map_err(unread)? {
+        let path = entry.map_err(unread)?.path();
+        if path.is_file() && is_picture(&path) {
+            pictures.push(path);
+        }
+    }
+    pictures.sort();
+    Ok(pictures)
+}
+
+fn is_picture(path: &Path) -> bool {
+    let suffix = path.extension().and_then(OsStr::to_str).unwrap_or_default();
+    SUFFIXES.iter().any(|known| known.eq_ignore_ascii_case(suffix))
+}
+
+/// Where what is made of each input goes: to the file `output` for one picture, if that is no
+/// folder and ends in `exr`; else into the folder `output`, named after the picture and `form`, so
+/// that the tile number of a UDIM stays where it was.
+pub(crate) fn outputs(
+    inputs: &[PathBuf],
+    output: &Path,
+    form: &str,
+) -> Result<Vec<PathBuf>, Failure> {
+    let is_file = output.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("exr"));
+    if inputs.len() == 1 && is_file && !output.is_dir() {
+        return Ok(vec![output.to_owned()]);
+    }
+    let mut outputs: Vec<PathBuf> = Vec::new();
+    for input in inputs {
+        let path = output.join(name_of(input, form));
+        if let Some(twin) = outputs.iter().position(|other| *other == path) {
+            let twin = inputs[twin].display();
+            return Err(Failure::file(
+                input,
+                format_args!("has the name of {twin}, expected names that differ without suffix"),
+            ));
+        }
+        outputs.push(path);
+    }
+    Ok(outputs)
+}
+
+/// `wall.1001.exr` becomes `wall.material.1001.exr`, which other programs still see as a tile.
+fn name_of(input: &Path, form: &str) -> PathBuf {
+    let stem = input.file_stem().unwrap_or_default().to_string_lossy();
+    match stem.rsplit_once(['.', '_']) {
+        Some((name, tile)) if is_udim(tile) => {
+            let separator = &stem[name.len()..=name.len()];
+            format!("{name}.{form}{separator}{tile}.exr").into()
+        }
+        _ => format!("{stem}.{form}.exr").into(),
+    }
+}
+
+/// Whether a word is the number of a UDIM tile: 1001 and up, in four digits.
+fn is_udim(word: &str) -> bool {
+    word.len() == 4 && word.parse().is_ok_and(|tile: u32| tile >= 1001)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_keep_their_tile() {
+        let name = |input: &str| name_of(Path::new(input), "material").display().to_string();
+        assert_eq!(name("a/wall.png"), "wall.material.exr");
+        assert_eq!(name("wall.1001.exr"), "wall.material.1001.exr");
+        assert_eq!(name("wall_1002.tif"), "wall.material_1002.exr");
+        assert_eq!(name("wall.0001.exr"), "wall.0001.material.exr");
+    }
+
+    #[test]
+    fn one_picture_may_name_its_file_and_two_need_a_folder() {
+        let one = [PathBuf::from("a.png")];
+        let two = [PathBuf::from("a.png"), PathBuf::from("b.png")];
+        let out = Path::new("out.exr");
+        assert_eq!(outputs(&one, out, "material"), Ok(vec![PathBuf::from("out.exr")]));
+        let names = outputs(&two, Path::new("out"), "radiance").unwrap();
+        assert_eq!(names[1], PathBuf::from("out/b.radiance.exr"));
+        let twins = [PathBuf::from("x/a.png"), PathBuf::from("y/a.tif")];
+        assert!(outputs(&twins, Path::new("out"), "radiance").is_err());
+    }
+
+    #[test]
+    fn a_folder_gives_its_pictures_in_order() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["b.EXR", "a.png", "notes.txt"] {
+            std::fs::write(folder.path().join(name), "").unwrap();
+        }
+        let found = find(&[folder.path().to_owned()]).unwrap();
+        let names: Vec<_> = found.iter().filter_map(|path| path.file_name()).collect();
+        assert_eq!(names, ["a.png", "b.EXR"]);
+    }
+}
