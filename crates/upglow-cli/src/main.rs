@@ -18,6 +18,7 @@ use std::process::ExitCode;
 use clap::Parser;
 
 fn main() -> ExitCode {
+    keep_quiet_about_damaged_files();
     let args = match args::Args::try_parse() {
         Ok(args) => args,
         Err(error) => return failure::report_usage(&error),
@@ -26,4 +27,14 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(),
     }
+}
+
+/// A damaged OpenEXR block ends in an error of one line, not in a panic's message before it.
+fn keep_quiet_about_damaged_files() {
+    let speak = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        if !upglow_image::is_unpacking() {
+            speak(panic);
+        }
+    }));
 }

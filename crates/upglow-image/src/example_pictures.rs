@@ -1,5 +1,7 @@
 //! Pictures to try the program with, by formula: no free picture has colors this wide.
 
+use crate::band::single;
+
 /// A picture in linear ACEScg, each channel 0..=1.
 #[derive(Clone, Copy, Debug)]
 pub struct ExamplePicture {
@@ -124,12 +126,6 @@ fn wave(turn: f64) -> f64 {
 /// A number in 0..1 for each pair of whole ones, without pattern to the eye.
 fn scatter([x, y]: [f64; 2]) -> f64 {
     (0.5 + 0.5 * wave(0.618_034 * x + 0.754_878 * y * (x + 1.0) + 0.31 * y)).clamp(0.0, 1.0)
-}
-
-/// The nearest number in single precision.
-#[expect(clippy::cast_possible_truncation, reason = "rounding is what it is for")]
-fn single(value: f64) -> f32 {
-    value as f32
 }
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! The blocks of an OpenEXR image: where they lie, and their content unpacked.
 
+use std::cell::Cell;
+
 use exr::math::{RoundingMode, Vec2};
 use exr::meta::BlockDescription;
 use exr::meta::attribute::{
@@ -10,6 +12,16 @@ use exr::meta::header::Header as UnpackHeader;
 use half::slice::HalfFloatSliceExt;
 
 use crate::exr_header::{Header, Packing, Sample};
+
+thread_local! {
+    static UNPACKING: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Whether this thread unpacks a block just now: a panic in there becomes an error that says what
+/// is wrong with the file, so a program's panic hook need not speak of it.
+pub fn is_unpacking() -> bool {
+    UNPACKING.get()
+}
 
 /// The most bytes that one block may take unpacked: 256 rows of 16,384 pixels in 64 float channels.
 pub(crate) const MAX_BLOCK_BYTES: u64 = 1 << 30;
@@ -119,9 +131,11 @@ impl Unpacker {
         }
         // The crate's B44 panics on damaged data (1.74.2 subtracts with overflow), and its PIZ and DWA
         // index by what they read: a file must not end the program, so this one call is fenced.
+        UNPACKING.set(true);
         let unpacked = std::panic::catch_unwind(|| {
             method.decompress_image_section_from_le(&self.header, packed, section, false)
         });
+        UNPACKING.set(false);
         match unpacked {
             Ok(bytes) => bytes.map_err(|error| error.to_string()),
             Err(_) => Err("values that no such data has".into()),

@@ -69,6 +69,7 @@ pub use compact::{
 pub use encoding::{Encoding, UnknownEncoding};
 pub use example_pictures::{EXAMPLE_PICTURES, ExamplePicture};
 pub use exr_attribute::{Attribute, Attributes};
+pub use exr_blocks::is_unpacking;
 pub use exr_error::ExrError;
 pub use exr_header::{Channel, Sample, Window};
 pub use exr_reader::ExrReader;

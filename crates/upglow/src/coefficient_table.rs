@@ -3,6 +3,7 @@
 use upglow_color::{Contract, Grid, LinearRgb, Matrix3};
 
 use crate::Sigmoid;
+use crate::lookup_table::to_single;
 
 /// Reflectances for the RGB colors of a unit cube, in the layout that `rgb2spec` defined and that
 /// Mitsuba 3, pbrt-v4 and colour-science read.
@@ -96,7 +97,7 @@ impl CoefficientTable {
     /// The levels of brightness that the published program writes: dense at both ends.
     pub fn levels(resolution: usize) -> Vec<f32> {
         let last = (resolution.max(2) - 1) as f64;
-        (0..resolution).map(|k| single(smooth_step(smooth_step(k as f64 / last)))).collect()
+        (0..resolution).map(|k| to_single(smooth_step(smooth_step(k as f64 / last)))).collect()
     }
 
     /// A table from its levels of brightness and nodes.
@@ -275,9 +276,9 @@ impl Integrator {
         };
         let xyz_from_rgb = Matrix3::from_columns([0, 1, 2].map(primary));
         Self {
-            rgb_weights: rgb_weights.map(|w| w.map(single).to_vec()),
-            xyz_from_rgb: xyz_from_rgb.0.map(|row| row.map(single)),
-            white: colorimetry.white().0.map(single),
+            rgb_weights: rgb_weights.map(|w| w.map(to_single).to_vec()),
+            xyz_from_rgb: xyz_from_rgb.0.map(|row| row.map(to_single)),
+            white: colorimetry.white().0.map(to_single),
         }
     }
 
@@ -293,8 +294,8 @@ impl Integrator {
 
     fn append_to(&self, bytes: &mut Vec<u8>) {
         let last = (Self::SAMPLES - 1) as f64;
-        let nowhere = single(-Self::FIRST_NM / Self::RANGE_NM);
-        let place = |i: usize| if i < Self::SAMPLES { single(i as f64 / last) } else { nowhere };
+        let nowhere = to_single(-Self::FIRST_NM / Self::RANGE_NM);
+        let place = |i: usize| if i < Self::SAMPLES { to_single(i as f64 / last) } else { nowhere };
         let slots = u32::try_from(Self::SLOTS).expect("a small constant");
         bytes.extend(slots.to_le_bytes());
         let places = (0..Self::SLOTS).map(place);
@@ -367,12 +368,6 @@ fn whole(position: f64) -> usize {
     position as usize
 }
 
-/// The nearest number in single precision.
-#[expect(clippy::cast_possible_truncation, reason = "rounding is what it is for")]
-fn single(value: f64) -> f32 {
-    value as f32
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -380,7 +375,7 @@ mod tests {
     /// Every node another straight line; flat 0.5 everywhere else would hide a wrong order.
     fn table(resolution: usize) -> CoefficientTable {
         let nodes =
-            (0..3 * resolution.pow(3)).map(|i| [0.0, 1e-4 * single(i as f64), -0.5]).collect();
+            (0..3 * resolution.pow(3)).map(|i| [0.0, 1e-4 * to_single(i as f64), -0.5]).collect();
         let integrator = Some(Integrator::of(&Contract::default()));
         CoefficientTable::new(CoefficientTable::levels(resolution), nodes, integrator).unwrap()
     }
@@ -416,7 +411,7 @@ mod tests {
             if level == 0 || (next == n - 1) || (next_but_one == n - 1) {
                 continue;
             }
-            let found = table.sigmoid(table.node_rgb(place).0.map(single));
+            let found = table.sigmoid(table.node_rgb(place).0.map(to_single));
             assert!((found.c1 - f64::from(node[1])).abs() < ROUNDING, "{largest} {place:?}");
         }
     }
