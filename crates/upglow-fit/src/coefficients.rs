@@ -210,11 +210,16 @@ mod tests {
     }
 
     #[test]
-    fn a_reader_finds_colors_that_nobody_could_tell_apart() {
-        let table = fit_coefficients(&srgb(), None, 16, &Unwatched).unwrap();
-        let found = round_trip(&table, &srgb(), 1000, 0);
-        assert!(found.mean < 0.2 && found.max < 3.0, "{found:?}");
-        assert_eq!(found, round_trip(&table, &srgb(), 1000, 0));
+    fn a_reader_finds_a_color_between_nodes_the_nearer_the_more_of_them_there_are() {
+        let spread = |resolution| {
+            let table = fit_coefficients(&srgb(), None, resolution, &Unwatched).unwrap();
+            round_trip(&table, &srgb(), 1000, 0)
+        };
+        // Straight lines between nodes err by the square of their distance: half the distance
+        // should leave a quarter; the dense levels of brightness do not halve evenly.
+        let [coarse, fine] = [9, 17].map(spread);
+        assert!(fine.mean < coarse.mean / 3.0, "{fine:?} {coarse:?}");
+        assert_eq!(fine, spread(17));
     }
 
     #[test]
