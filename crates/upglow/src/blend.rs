@@ -1,9 +1,9 @@
 //! The material of one color in single precision, ready to evaluate.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{Level, Simd, dispatch, f32x4, f32x8};
+use fearless_simd::{Level, Simd, dispatch, f32x4, f32x8, i32x4};
 
-use crate::curve_table::{Curves, DyeNumbers};
+use crate::curve_table::{Curves, DyeNumbers, whole};
 use crate::inverse_root::{twice_inverse_root, twice_inverse_root8};
 use crate::lookup_table::{LookupTable, PackedNode, greater_of, to_single};
 use crate::{Accounting, Model};
@@ -58,19 +58,26 @@ macro_rules! in_vectors {
 
 impl<'t> Blend<'t> {
     #[inline(always)]
-    pub(crate) fn new(table: &'t LookupTable, weights: [f32; 4], nodes: [PackedNode; 4]) -> Self {
-        let parabola = |number: usize| nodes.map(|node| node.parabola[number]);
-        let fluorescence = |number: usize| nodes.map(|node| node.fluorescence[number]);
-        let [concentration, last] = [fluorescence(1), fluorescence(3)];
+    pub(crate) fn new<S: Simd>(
+        simd: S,
+        table: &'t LookupTable,
+        weights: [f32; 4],
+        nodes: [&PackedNode; 4],
+    ) -> Self {
+        // In vectors: what is written by numbers cannot be read by vectors until it has reached the
+        // cache.
+        let [edge_nm, constant, linear, quadratic] =
+            transposed(nodes.map(|node| load(simd, &node.parabola)));
+        let [first, concentration, returned_nm, last] =
+            transposed(nodes.map(|node| load(simd, &node.fluorescence)));
         Self {
             table,
-            fluorescent: concentration[0] + concentration[1] + concentration[2] + concentration[3]
-                > 0.0,
-            common_dye: common_dye(concentration, last),
+            fluorescent: concentration.simd_gt(0.0).any_true(),
+            common_dye: common_dye(simd, concentration, last),
             weights,
-            edge_nm: parabola(0),
-            parabola: [parabola(1), parabola(2), parabola(3)],
-            fluorescence: [fluorescence(0), concentration, fluorescence(2), last],
+            edge_nm: edge_nm.into(),
+            parabola: [constant.into(), linear.into(), quadratic.into()],
+            fluorescence: [first.into(), concentration.into(), returned_nm.into(), last.into()],
         }
     }
 
@@ -227,9 +234,10 @@ impl<'t> Blend<'t> {
                 if let Some(dye) = self.common_dye {
                     pair = curves.absorption.pairs(simd, rows, [dye; 4]);
                 }
+                let dyes = self.dyes(simd);
                 for i in 0..4 {
                     if self.common_dye.is_none() {
-                        pair = curves.absorption.pairs(simd, rows, [dye(last[i]); 4]);
+                        pair = curves.absorption.pairs(simd, rows, [dyes[i]; 4]);
                     }
                     let mixed = mix(pair, f32x4::splat(simd, first[i]));
                     passed[i] = all - mixed * concentration[i];
@@ -284,16 +292,13 @@ impl<'t> Blend<'t> {
     /// The curves of each corner's dye and of its neighbor at one wavelength.
     #[inline(always)]
     fn pairs<S: Simd>(&self, simd: S, curves: &Curves, lambda_nm: f32) -> PerLobe<S> {
-        let row = self.table.curves.row(lambda_nm);
+        let row = self.table.curves.row(simd, lambda_nm);
         match self.common_dye {
             Some(dye) => {
                 let [a, b] = curves.pair(row, dye);
                 [f32x4::splat(simd, a), f32x4::splat(simd, b)]
             }
-            None => {
-                let [a, b, c, d] = self.fluorescence[3];
-                curves.pairs(simd, row.four_times(simd), [dye(a), dye(b), dye(c), dye(d)])
-            }
+            None => curves.pairs(simd, row.four_times(simd), self.dyes(simd)),
         }
     }
 
@@ -369,6 +374,14 @@ impl<'t> Blend<'t> {
         }
     }
 
+    /// The number of each corner's dye.
+    #[inline(always)]
+    fn dyes<S: Simd>(&self, simd: S) -> [u32; 4] {
+        let dyes: i32x4<S> = load(simd, &self.fluorescence[3]).to_int();
+        let [a, b, c, d]: [i32; 4] = dyes.into();
+        [a.cast_unsigned(), b.cast_unsigned(), c.cast_unsigned(), d.cast_unsigned()]
+    }
+
     /// A number of each corner's dye and of its neighbor.
     #[inline(always)]
     fn dye_numbers<S: Simd>(&self, simd: S, number: impl Fn(&DyeNumbers) -> f32) -> PerLobe<S> {
@@ -378,8 +391,9 @@ impl<'t> Blend<'t> {
             return [f32x4::splat(simd, number(one)), f32x4::splat(simd, number(two))];
         }
         let mut numbers = [[0.0; 4]; 2];
+        let dyes = self.dyes(simd);
         for i in 0..4 {
-            let [one, two] = curves.pair(dye(self.fluorescence[3][i]));
+            let [one, two] = curves.pair(dyes[i]);
             (numbers[0][i], numbers[1][i]) = (number(one), number(two));
         }
         [load(simd, &numbers[0]), load(simd, &numbers[1])]
@@ -448,15 +462,12 @@ impl<'t> Blend<'t> {
 
 /// The one first dye of the corners that fluoresce, `None` if they have several.
 #[inline(always)]
-fn common_dye(concentration: [f32; 4], number: [f32; 4]) -> Option<u32> {
-    let [a, b, c, d] = number;
+fn common_dye<S: Simd>(simd: S, concentration: f32x4<S>, number: f32x4<S>) -> Option<u32> {
     // Nodes without fluorescence have number 0.
+    let [a, b, c, d] = number.into();
     let greatest = greater_of(greater_of(a, b), greater_of(c, d));
-    let mut common = true;
-    for i in 0..4 {
-        common &= number[i] == greatest || concentration[i] == 0.0;
-    }
-    common.then_some(dye(greatest))
+    let same = number.simd_eq(f32x4::splat(simd, greatest)) | concentration.simd_eq(0.0);
+    same.all_true().then_some(whole(simd, greatest))
 }
 
 /// Numbers of two dyes, mixed by the weight of the second.
@@ -502,17 +513,6 @@ fn share<S: Simd>(simd: S, accounting: Accounting, nm: f32, mean_nm: f32x4<S>) -
         Accounting::Energy => f32x4::splat(simd, 1.0),
         Accounting::Photon => (f32x4::splat(simd, nm) / mean_nm).min(1.0),
     }
-}
-
-/// The number of a dye that was stored among other numbers.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "it was made from a dye's number"
-)]
-#[inline(always)]
-pub(crate) fn dye(number: f32) -> u32 {
-    number as i32 as u32
 }
 
 #[inline(always)]

@@ -3,10 +3,11 @@
 
 use fearless_simd::{Level, Simd, dispatch};
 
-use crate::blend::{Blend, PerLobe, dye, sum, with_baseline};
+use crate::blend::{Blend, PerLobe, sum, with_baseline};
+use crate::curve_table::{DyeNumbers, whole};
 use crate::lookup_table::to_single;
 use crate::material::Lobe;
-use crate::{Draw, Fluorescence, Model, Sample};
+use crate::{Accounting, Draw, Fluorescence, Model, Sample};
 
 impl<'t> Blend<'t> {
     /// Draws the wavelength of incident light, given that of the light that leaves; see
@@ -19,10 +20,10 @@ impl<'t> Blend<'t> {
             let emission = self.emission(simd, out_nm);
             let shares = self.leaving(simd, out_nm, emission);
             let throughput = shares.total();
-            Some(match self.choose(shares, throughput, u[0])? {
+            Some(match shares.choose(self.lobes(), throughput, u[0])? {
                 None => elastic(out_nm, shares.elastic, throughput),
                 Some(lobe) => {
-                    let in_nm = to_single(lobe.sample_absorbed(u[1].into()));
+                    let in_nm = self.draw_absorbed(simd, lobe, u[1]);
                     let moved = self.moved(simd, self.returned(simd, in_nm), emission);
                     shifted(in_nm, moved, throughput)
                 }
@@ -61,10 +62,10 @@ impl<'t> Blend<'t> {
         with_baseline!(simd => {
             let (returned, shares) = self.arriving(simd, in_nm);
             let throughput = shares.total();
-            Some(match self.choose(shares, throughput, u[0])? {
+            Some(match shares.choose(self.lobes(), throughput, u[0])? {
                 None => elastic(in_nm, shares.elastic, throughput),
                 Some(lobe) => {
-                    let out_nm = to_single(lobe.sample_emitted(u[1].into()));
+                    let out_nm = self.draw_emitted(simd, lobe, u[1]);
                     let moved = self.moved(simd, returned, self.emission(simd, out_nm));
                     shifted(out_nm, moved, throughput)
                 }
@@ -110,30 +111,70 @@ impl<'t> Blend<'t> {
         (returned, Shares { elastic, lobes: self.arriving_shares(simd, returned) })
     }
 
-    /// The lobe that `u` falls on, `Some(None)` for the elastic part; `None` where nothing is
-    /// carried.
+    /// An incident wavelength with the density of what a lobe returns, from `u` in 0..1.
     #[inline(always)]
-    fn choose<S: Simd>(
-        &self,
-        shares: Shares<S>,
-        throughput: f32,
-        u: f32,
-    ) -> Option<Option<Lobe<'t>>> {
-        if throughput <= 0.0 {
-            return None;
+    fn draw_absorbed<S: Simd>(&self, simd: S, lobe: ChosenLobe, u: f32) -> f32 {
+        match &self.table.model {
+            Model::Dyes(model) if model.options().accounting == Accounting::Energy => {
+                let (dye, u) = self.pick_dye(simd, lobe, |dye| dye.absorbed_nm, u);
+                self.table.curves.absorbing.quantile(simd, dye, u)
+            }
+            _ => {
+                to_single(self.lobe(simd, lobe).map_or(0.0, |lobe| lobe.sample_absorbed(u.into())))
+            }
         }
-        Some(shares.choose(u * throughput).and_then(|number| self.lobe(number)))
     }
 
-    /// Lobe `number` mod 2 of corner `number` / 2.
-    fn lobe(&self, number: usize) -> Option<Lobe<'t>> {
+    /// An outgoing wavelength with the density of a lobe's emission, from `u` in 0..1.
+    #[inline(always)]
+    fn draw_emitted<S: Simd>(&self, simd: S, lobe: ChosenLobe, u: f32) -> f32 {
+        match &self.table.model {
+            Model::Dyes(_) => {
+                let (dye, u) = self.pick_dye(simd, lobe, |dye| dye.emitted, u);
+                self.table.curves.emitting.quantile(simd, dye, u)
+            }
+            _ => to_single(self.lobe(simd, lobe).map_or(0.0, |lobe| lobe.sample_emitted(u.into()))),
+        }
+    }
+
+    /// One of a lobe's dyes in proportion to an area of its curve, and what is left of `u` to draw
+    /// from it.
+    #[inline(always)]
+    fn pick_dye<S: Simd>(
+        &self,
+        simd: S,
+        ChosenLobe { corner, lobe }: ChosenLobe,
+        area: impl Fn(&DyeNumbers) -> f32,
+        u: f32,
+    ) -> (u32, f32) {
+        let [weight, _, _, last] = &self.fluorescence;
+        let first = whole(simd, last[corner]);
+        if self.table.is_separate() {
+            return (first + lobe, u);
+        }
+        let [one, two] = self.table.curves.pair(first);
+        let [one, two] = [(1.0 - weight[corner]) * area(one), weight[corner] * area(two)];
+        let target = u * (one + two);
+        // Selected, not branched to: nothing foretells which it is.
+        let second = target >= one && two > 0.0;
+        let (start, share) = if second { (one, two) } else { (0.0, one) };
+        (first + u32::from(second), (target - start) / share)
+    }
+
+    /// Lobes of a corner.
+    #[inline(always)]
+    fn lobes(&self) -> u32 {
+        if self.table.is_separate() { 2 } else { 1 }
+    }
+
+    fn lobe<S: Simd>(&self, simd: S, ChosenLobe { corner, lobe }: ChosenLobe) -> Option<Lobe<'t>> {
         let [first, concentration, _, last] =
-            self.fluorescence.map(|numbers| f64::from(numbers[number / 2]));
+            self.fluorescence.map(|numbers| f64::from(numbers[corner]));
         let model = &self.table.model;
         let fluorescence = match model {
             Model::Reflectance => Fluorescence::None,
             Model::Dyes(_) => Fluorescence::Dyes {
-                first: dye(to_single(last)) as usize,
+                first: whole(simd, to_single(last)) as usize,
                 weight: first,
                 concentration,
             },
@@ -143,7 +184,7 @@ impl<'t> Blend<'t> {
                 concentration,
             },
         };
-        fluorescence.lobes(model).nth(number % 2)
+        fluorescence.lobes(model).nth(lobe as usize)
     }
 }
 
@@ -171,29 +212,48 @@ impl<S: Simd> Shares<S> {
         self.elastic + sum(self.lobes[0] + self.lobes[1])
     }
 
-    /// The lobe, as lobe + 2·corner, that `rest` of the total falls on; `None` is the elastic part.
+    /// What `u` in 0..1 falls on, `Some(None)` for the elastic part; `None` where nothing is
+    /// carried.
     #[inline(always)]
-    fn choose(&self, mut rest: f32) -> Option<usize> {
-        rest -= self.elastic;
-        if rest < 0.0 {
+    fn choose(&self, lobes: u32, throughput: f32, u: f32) -> Option<Option<ChosenLobe>> {
+        if throughput <= 0.0 {
             return None;
         }
-        let lobes: [[f32; 4]; 2] = [self.lobes[0].into(), self.lobes[1].into()];
-        let mut last = None;
-        for corner in 0..4 {
-            for lobe in 0..2 {
-                let share = lobes[lobe][corner];
-                if share > 0.0 {
-                    last = Some(2 * corner + lobe);
-                    rest -= share;
-                    if rest < 0.0 {
-                        return last;
-                    }
-                }
+        let rest = u * throughput - self.elastic;
+        Some(if rest < 0.0 { None } else { self.choose_lobe(lobes, rest) })
+    }
+
+    /// The lobe that `rest` falls on, the last that carries anything for a rest beyond all. Counted
+    /// without a branch: nothing foretells the corner.
+    #[inline(always)]
+    fn choose_lobe(&self, lobes: u32, rest: f32) -> Option<ChosenLobe> {
+        let mut chosen = None;
+        let mut end = 0.0;
+        for lobe in 0..lobes {
+            let shares: [f32; 4] = self.lobes[lobe as usize].into();
+            let (mut passed, mut last) = (0, 0);
+            for corner in 0..4 {
+                end += shares[corner];
+                passed += usize::from(rest >= end);
+                last = if shares[corner] > 0.0 { corner + 1 } else { last };
+            }
+            if last > 0 {
+                chosen = Some(ChosenLobe { corner: passed.min(last - 1), lobe });
+            }
+            if rest < end {
+                break;
             }
         }
-        last
+        chosen
     }
+}
+
+/// A lobe of a [`Blend`].
+#[derive(Clone, Copy, Debug)]
+struct ChosenLobe {
+    corner: usize,
+    /// Which of the corner's, 0 or 1.
+    lobe: u32,
 }
 
 /// 0 where there is nothing to share.

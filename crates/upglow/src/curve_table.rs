@@ -6,12 +6,13 @@ use upglow_color::{Grid, Spectrum};
 
 use crate::blend::transposed;
 use crate::lookup_table::{smaller_of, to_single};
+use crate::quantile_table::QuantileTable;
 use crate::{DyeModel, Model};
 
 /// The range of [`Grid::FINE`], whose step is 1 nm.
-const FIRST_NM: f32 = 300.0;
+pub(crate) const FIRST_NM: f32 = 300.0;
 const LAST_NM: f32 = 830.0;
-const BINS: usize = Grid::FINE.len() - 1;
+pub(crate) const BINS: usize = Grid::FINE.len() - 1;
 /// The number before [`BINS`]: the last wavelength is in the last bin. What it misses is 3e-5 of
 /// a step, 1e-6 at most.
 const LAST_PLACE: f32 = f32::next_down(BINS as f32);
@@ -23,6 +24,8 @@ const LAST_PLACE: f32 = f32::next_down(BINS as f32);
 pub(crate) struct CurveTable {
     pub(crate) absorption: Curves,
     pub(crate) emission: Curves,
+    pub(crate) absorbing: QuantileTable,
+    pub(crate) emitting: QuantileTable,
     /// `[dye]`, the first again after the last.
     dyes: Vec<DyeNumbers>,
     /// Numbers of a wavelength.
@@ -40,6 +43,8 @@ pub(crate) struct Curves(Vec<f32>);
 pub(crate) struct DyeNumbers {
     pub(crate) quantum_yield: f32,
     pub(crate) mean_emission_nm: f32,
+    /// ∫ a dλ, nm.
+    pub(crate) absorbed_nm: f32,
     /// ∫ returned dλ at concentration 1 of the dye by itself, nm.
     pub(crate) returned_nm: f32,
     /// ∫ ê dλ.
@@ -65,6 +70,7 @@ impl CurveTable {
         let Model::Dyes(model) = model else { return Self::default() };
         let curves = model.curves();
         let ring = curves.len() + 1;
+        let dyes = || curves.iter().cycle().take(ring);
         let rows = |of: fn(&crate::DyeCurves) -> &Spectrum| {
             let rows = (0..BINS).flat_map(|i| {
                 (0..ring).flat_map(move |dye| {
@@ -77,17 +83,19 @@ impl CurveTable {
         Self {
             absorption: rows(|dye| &dye.absorption),
             emission: rows(|dye| &dye.emission),
-            dyes: (0..ring).map(|i| DyeNumbers::new(model, &curves[i % curves.len()])).collect(),
+            absorbing: QuantileTable::new(dyes().map(|dye| &dye.absorption)),
+            emitting: QuantileTable::new(dyes().map(|dye| &dye.emission)),
+            dyes: dyes().map(|dye| DyeNumbers::new(model, dye)).collect(),
             stride: u32::try_from(2 * ring).expect("a set has far fewer than 2³¹ dyes"),
         }
     }
 
     /// Where the curves of a wavelength are.
     #[inline(always)]
-    pub(crate) fn row(&self, nm: f32) -> Row {
+    pub(crate) fn row<S: Simd>(&self, simd: S, nm: f32) -> Row {
         let inside = (FIRST_NM..=LAST_NM).contains(&nm);
         let place = if inside { smaller_of(nm - FIRST_NM, LAST_PLACE) } else { BINS as f32 };
-        let below = whole(place);
+        let below = whole(simd, place);
         Row { start: below * self.stride, fraction: place - below as f32 }
     }
 
@@ -158,19 +166,18 @@ impl DyeNumbers {
         Self {
             quantum_yield: to_single(dye.quantum_yield),
             mean_emission_nm: to_single(dye.mean_emission_nm),
+            absorbed_nm: to_single(dye.absorbing.total()),
             returned_nm: to_single(dye.quantum_yield * absorbed_nm),
             emitted: to_single(dye.emitting.total()),
         }
     }
 }
 
-/// The whole part of a place in a table.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "the place is at least 0 and its fraction is meant to go"
-)]
+/// The whole part of a number that is not negative and below 2³¹. In a vector: what is safe for
+/// all numbers takes a plain conversion four more instructions.
 #[inline(always)]
-fn whole(place: f32) -> u32 {
-    place as i32 as u32
+pub(crate) fn whole<S: Simd>(simd: S, number: f32) -> u32 {
+    let whole: i32x4<S> = f32x4::splat(simd, number).to_int();
+    let [whole, ..]: [i32; 4] = whole.into();
+    whole.cast_unsigned()
 }

@@ -92,23 +92,31 @@ fn signs_differ(corners: &Corners) -> bool {
 /// that grays are mixtures of grays. `rgb` must be in 0..=1.
 pub(crate) fn tetrahedron(resolution: usize, rgb: LinearRgb) -> [([usize; 3], f64); 4] {
     let last = (resolution - 1) as f64;
-    let position = rgb.0.map(|v| v * last);
-    let corner = position.map(|p| lower_node(p, resolution));
-    let fraction = [0, 1, 2].map(|k| position[k] - corner[k] as f64);
-    // From the dark corner one axis at a time, the largest fraction first.
-    let mut axes = [0, 1, 2];
-    axes.sort_by(|&a, &b| fraction[b].total_cmp(&fraction[a]));
-    let sorted = axes.map(|axis| fraction[axis]);
-    let weights = [1.0 - sorted[0], sorted[0] - sorted[1], sorted[1] - sorted[2], sorted[2]];
-    let mut node = corner;
-    let mut step = 0;
-    weights.map(|weight| {
-        if step > 0 {
-            node[axes[step - 1]] += 1;
-        }
-        step += 1;
-        ([node[2], node[1], node[0]], weight)
-    })
+    let (mut corner, mut fraction) = ([0; 3], [0.0; 3]);
+    for k in 0..3 {
+        let position = rgb.0[k] * last;
+        corner[k] = lower_node(position, resolution);
+        fraction[k] = position - corner[k] as f64;
+    }
+    // From the dark corner one axis at a time, the largest fraction first. Ranks stand for
+    // branches: in an image one color does not foretell the order of the next one's channels.
+    let [r, g, b] = fraction;
+    let rank = [
+        usize::from(g > r) + usize::from(b > r),
+        usize::from(r >= g) + usize::from(b > g),
+        usize::from(r >= b) + usize::from(g >= b),
+    ];
+    let mut sorted = [0.0; 3];
+    for k in 0..3 {
+        sorted[rank[k]] = fraction[k];
+    }
+    let node = |step: usize| [2, 1, 0].map(|k| corner[k] + usize::from(rank[k] < step));
+    [
+        (node(0), 1.0 - sorted[0]),
+        (node(1), sorted[0] - sorted[1]),
+        (node(2), sorted[1] - sorted[2]),
+        (node(3), sorted[2]),
+    ]
 }
 
 /// The node at or below a position in 0..=resolution − 1, and at most the last but one.

@@ -52,6 +52,7 @@ mod material;
 mod mixture;
 mod model;
 mod model_on_grid;
+mod quantile_table;
 #[cfg(test)]
 mod random;
 mod sampling;

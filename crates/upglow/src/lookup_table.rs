@@ -1,10 +1,10 @@
 //! A cube compiled for looking up millions of colors.
 
-use crate::blend::{Bells, Blend};
+use crate::blend::{Bells, Blend, with_baseline};
 use crate::curve_table::CurveTable;
 use crate::material::Lobe;
 use crate::{Cube, Edge, LookupError, Mixing, Model};
-use fearless_simd::Level;
+use fearless_simd::{Level, dispatch};
 
 /// A [`Cube`] in single precision, packed so that a look-up touches as few cache lines as it can.
 ///
@@ -134,8 +134,8 @@ impl LookupTable {
     /// color of the cube clamps first.
     pub fn blend(&self, rgb: [f32; 3]) -> Result<Blend<'_>, LookupError> {
         let corners = Corners::around(self.resolution, rgb).ok_or_else(|| outside(rgb))?;
-        let nodes = corners.nodes.map(|node| self.nodes[node as usize]);
-        Ok(Blend::new(self, corners.weights, nodes))
+        let nodes = corners.nodes.map(|node| &self.nodes[node as usize]);
+        Ok(with_baseline!(simd => Blend::new(simd, self, corners.weights, nodes)))
     }
 
     /// Whether each of two dyes gives back only what it absorbed itself.
