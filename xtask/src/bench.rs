@@ -15,7 +15,7 @@ struct Goal {
     peer: &'static str,
 }
 
-const GOALS: [Goal; 19] = [
+const GOALS: &[Goal] = &[
     Goal {
         job: "build, defaults: 32³, eight dyes, ΔE00, slope limit",
         bench: "build/default/32",
@@ -56,7 +56,13 @@ const GOALS: [Goal; 19] = [
         peer: "",
     },
     Goal {
-        job: "the same, dyes at every corner",
+        job: "the same, random colors of the default cube",
+        bench: "built_cube/reflectance4/All",
+        goal: "6 ns",
+        peer: "",
+    },
+    Goal {
+        job: "the same, four different pairs of dyes",
         bench: "evaluate/reflectance4/Dyes",
         goal: "6 ns",
         peer: "",
@@ -68,37 +74,43 @@ const GOALS: [Goal; 19] = [
         peer: "",
     },
     Goal {
-        job: "the same, dyes at every corner",
+        job: "the same, random colors of the default cube",
+        bench: "built_cube/reflectance8/All",
+        goal: "10 ns",
+        peer: "",
+    },
+    Goal {
+        job: "the same, four different pairs of dyes",
         bench: "evaluate/reflectance8/Dyes",
         goal: "10 ns",
         peer: "",
     },
     Goal {
-        job: "re-radiation, dyes",
+        job: "re-radiation, four different pairs of dyes",
         bench: "evaluate/reradiation/Dyes",
         goal: "30 ns",
         peer: "tabulated CDFs, 9 MB a material",
     },
     Goal {
-        job: "sampling the incident wavelength, dyes",
+        job: "sampling the incident wavelength, the same",
         bench: "sample/sample_incident/Dyes",
         goal: "30 ns",
         peer: "",
     },
     Goal {
-        job: "sampling the outgoing wavelength, dyes",
+        job: "sampling the outgoing wavelength, the same",
         bench: "sample/sample_outgoing/Dyes",
         goal: "30 ns",
         peer: "",
     },
     Goal {
-        job: "its density, incident, dyes",
+        job: "its density, incident, the same",
         bench: "sample/incident_pdf/Dyes",
         goal: "30 ns",
         peer: "",
     },
     Goal {
-        job: "its density, outgoing, dyes",
+        job: "its density, outgoing, the same",
         bench: "sample/outgoing_pdf/Dyes",
         goal: "30 ns",
         peer: "",
@@ -112,6 +124,24 @@ const GOALS: [Goal; 19] = [
     Goal {
         job: "reading and writing the arrays, per color",
         bench: "batch/copy",
+        goal: "",
+        peer: "",
+    },
+    Goal {
+        job: "one material a texel, random sRGB, one core",
+        bench: "polish/polish/Srgb",
+        goal: "1 µs",
+        peer: "",
+    },
+    Goal {
+        job: "the same in one step (`bake --fast`)",
+        bench: "polish/interpolate/Srgb",
+        goal: "0.48 µs",
+        peer: "",
+    },
+    Goal {
+        job: "what a texel needs, muted colors, one core",
+        bench: "standing/kind_of_muted_colors",
         goal: "",
         peer: "",
     },
@@ -199,13 +229,15 @@ fn page(measured: &[Measured], machine: &str, today: &str) -> String {
         "# Performance\n\nMedians from `cargo xtask bench`, which writes this page. Machine: \
          {machine}. Date: {today}.\n\n| job | measured | goal | peer |\n| --- | --- | --- | --- |\n"
     );
-    for goal in &GOALS {
+    for goal in GOALS {
         let median = measured.iter().find(|m| m.bench == goal.bench);
         let median = median.map_or("not measured", |m| &m.median);
         writeln!(page, "| {} | {median} | {} | {} |", goal.job, goal.goal, goal.peer)
             .expect("a string takes any text");
     }
-    page.push_str("\nEvery bench:\n\n| bench | median |\n| --- | --- |\n");
+    page.push_str(
+        "\nWhat limits them: [where-the-time-goes.md](where-the-time-goes.md).\n\nEvery bench:\n\n| bench | median |\n| --- | --- |\n",
+    );
     for Measured { bench, median } in measured {
         writeln!(page, "| `{bench}` | {median} |").expect("a string takes any text");
     }
