@@ -4,16 +4,18 @@ mod corner;
 mod descent;
 mod emission;
 mod place;
+mod repeats;
 mod shine;
 mod start;
 mod texel;
 
 use upglow::{AnalyticModel, Cube, Fluorescence, LengthError, Model, Node};
-use upglow_color::LinearRgb;
+use upglow_color::{LinearRgb, Matrix3};
 
 use crate::{FitOptions, FitOptionsError, Fitter};
 use corner::{Corner, Corners};
 use emission::Emission;
+use repeats::Repeats;
 use shine::Sums;
 use start::{Family, Glow};
 use texel::Texel;
@@ -54,6 +56,9 @@ pub struct Polisher<'c> {
     corners: Vec<Corner>,
     /// Of each pair of dyes.
     emissions: Vec<Emission>,
+    xyz_from_rgb: Matrix3,
+    /// One over X, Y, Z of the perfect diffuser.
+    by_white: [f64; 3],
     grays_are_flat: bool,
     slope_limit_per_nm: f64,
 }
@@ -91,11 +96,24 @@ impl<'c> Polisher<'c> {
             _ => Vec::new(),
         };
         let diffuser = model.colorimetry().white().0;
-        let white = model.colorimetry().xyz_from_rgb(LinearRgb([1.0; 3])).0;
+        let xyz = |rgb| model.colorimetry().xyz_from_rgb(LinearRgb(rgb)).0;
+        let white = xyz([1.0; 3]);
+        let xyz_from_rgb = Matrix3::from_columns(Matrix3::IDENTITY.0.map(xyz));
+        let by_white = diffuser.map(|v| 1.0 / v);
         let grays_are_flat = (0..3).all(|k| (white[k] - diffuser[k]).abs() < FLAT);
         let sums = Sums::new(model);
         let slope_limit_per_nm = fitter.slope_limit_per_nm;
-        Ok(Self { cube, sums, corners, emissions, grays_are_flat, slope_limit_per_nm, fitter })
+        Ok(Self {
+            cube,
+            sums,
+            corners,
+            emissions,
+            xyz_from_rgb,
+            by_white,
+            grays_are_flat,
+            slope_limit_per_nm,
+            fitter,
+        })
     }
 
     /// One material for each RGB, which shows it wherever the corners' materials show theirs and
@@ -138,19 +156,31 @@ impl<'c> Polisher<'c> {
             return Err(LengthError { found: out.len(), expected: rgb.len() });
         }
         let mut outside = 0;
-        for (rgb, out) in rgb.iter().zip(out) {
-            let rgb = LinearRgb(rgb.map(f64::from));
-            *out = match self.cube.corners(rgb) {
-                Ok(corners) => {
-                    material(rgb, &corners.map(|(index, weight)| (weight, &self.corners[index])))
-                }
-                Err(_) => {
-                    outside += 1;
-                    NOWHERE
-                }
+        let mut repeats = Repeats::new(rgb.len());
+        for texel in 0..rgb.len() {
+            if !rgb[texel].iter().all(|v| (0.0..=1.0).contains(v)) {
+                outside += 1;
+                out[texel] = NOWHERE;
+                continue;
+            }
+            out[texel] = match repeats.earlier(rgb, texel) {
+                Some(earlier) => out[earlier],
+                None => self.at(rgb[texel], &material),
             };
         }
         Ok(outside)
+    }
+
+    #[inline(always)]
+    fn at(
+        &self,
+        [red, green, blue]: [f32; 3],
+        material: &impl Fn(LinearRgb, &Corners<'_>) -> Node,
+    ) -> Node {
+        let rgb = LinearRgb([f64::from(red), f64::from(green), f64::from(blue)]);
+        let Ok([a, b, c, d]) = self.cube.corners(rgb) else { return NOWHERE };
+        let corner = |(index, weight): (usize, f64)| (weight, &self.corners[index]);
+        material(rgb, &[corner(a), corner(b), corner(c), corner(d)])
     }
 }
 

@@ -234,7 +234,8 @@ fn batches_change_nothing() {
     for model in models() {
         let cube = cube(&model, 6);
         let polisher = Polisher::new(&cube).unwrap();
-        let rgb = random(300);
+        // Each color twice: once it is found, once remembered.
+        let rgb = [random(300), random(300)].concat();
         let whole = polished(&polisher, &rgb);
         for size in [1, 7, 64] {
             let parts: Vec<Node> =

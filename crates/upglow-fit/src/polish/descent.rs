@@ -118,41 +118,59 @@ pub(super) fn shortest_step<const M: usize>(
     damping: f64,
 ) -> Unknowns {
     let mut residual = *residual;
-    let mut next = *x;
-    let mut is_moving = [true; UNKNOWNS];
+    // What is set on a bound stays there, and has no derivatives any more.
+    let (mut from, mut by) = (*x, *by);
+    let (mut wanted, mut next) = (*x, *x);
     for _ in 0..UNKNOWNS {
-        let mut matrix = [[0.0; M]; M];
-        for v in (0..UNKNOWNS).filter(|&v| is_moving[v]) {
-            for i in 0..M {
-                for k in 0..=i {
-                    matrix[i][k] += by[v][i] * by[v][k];
-                }
-            }
-        }
-        let greatest = (0..M).fold(0.0, |most: f64, i| most.max(matrix[i][i]));
-        for i in 0..M {
-            matrix[i][i] += damping * greatest;
-        }
-        let Some(y) = solve_positive(matrix, residual) else { return next };
+        let Some(y) = solve_positive(damped_squares(&by, damping), residual) else { return next };
         let mut has_crossed = false;
-        let mut left = residual;
         for v in 0..UNKNOWNS {
-            let wanted = if is_moving[v] { x[v] - dot(&by[v], &y) } else { next[v] };
-            next[v] = wanted.max(bounds[v][0]).min(bounds[v][1]);
-            if next[v] != wanted {
-                has_crossed = true;
-                is_moving[v] = false;
-                for i in 0..M {
-                    left[i] += by[v][i] * (next[v] - x[v]);
-                }
-            }
+            wanted[v] = from[v] - dot(&by[v], &y);
+            next[v] = within(wanted[v], &bounds[v]);
+            has_crossed |= next[v] != wanted[v];
         }
         if !has_crossed {
             break;
         }
-        residual = left;
+        for v in 0..UNKNOWNS {
+            if next[v] != wanted[v] {
+                for i in 0..M {
+                    residual[i] += by[v][i] * (next[v] - x[v]);
+                }
+                (from[v], by[v]) = (next[v], [0.0; M]);
+            }
+        }
     }
     next
+}
+
+/// The lower triangle of Σ jᵥjᵥᵀ + μ.
+#[inline(always)]
+fn damped_squares<const M: usize>(by: &[[f64; M]; UNKNOWNS], damping: f64) -> [[f64; M]; M] {
+    let mut matrix = [[0.0; M]; M];
+    for v in 0..UNKNOWNS {
+        for i in 0..M {
+            for k in 0..i + 1 {
+                matrix[i][k] += by[v][i] * by[v][k];
+            }
+        }
+    }
+    let mut greatest = 0.0;
+    for i in 0..M {
+        greatest = if matrix[i][i] > greatest { matrix[i][i] } else { greatest };
+    }
+    for i in 0..M {
+        matrix[i][i] += damping * greatest;
+    }
+    matrix
+}
+
+/// A number moved between its bounds; the lower one for what is no number.
+#[inline(always)]
+pub(super) fn within(value: f64, &[least, greatest]: &[f64; 2]) -> f64 {
+    // One instruction each, where `f64::max` also looks for what is no number.
+    let value = if value > least { value } else { least };
+    if value < greatest { value } else { greatest }
 }
 
 #[inline(always)]
@@ -175,7 +193,7 @@ fn solve_positive<const M: usize>(mut a: [[f64; M]; M], mut b: [f64; M]) -> Opti
         }
         for i in k + 1..M {
             let factor = a[i][k] * inverse[k];
-            for j in k + 1..=i {
+            for j in k + 1..i + 1 {
                 a[i][j] -= factor * a[j][k];
             }
             b[i] -= factor * b[k];

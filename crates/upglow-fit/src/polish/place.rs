@@ -2,9 +2,10 @@
 
 use upglow::{Edge, Model};
 
-use crate::parabola::{MIDDLE_NM, Parabola, edge_of, scaled, sigmoid_of, steepness};
+use crate::parabola::{MIDDLE_NM, Parabola, edge_of, scaled, sigmoid_of};
 use crate::polish::descent::{
-    Bounds, EDGE_BOUND, LEVEL_BOUND, Measure, Point, UNKNOWNS, Unknowns, Vector, dot, shortest_step,
+    Bounds, EDGE_BOUND, LEVEL_BOUND, Measure, Point, UNKNOWNS, Unknowns, Vector, dot,
+    shortest_step, within,
 };
 use crate::polish::shine::Shown;
 use crate::polish::start::{Family, Glow};
@@ -29,29 +30,45 @@ pub(super) const STEEPNESS_WEIGHT: f64 = 100.0;
 /// slope is not quite linear in the unknowns.
 const STEEPNESS_GOAL: f64 = 0.999;
 
-/// The chart of values: a reflectance by its values at three wavelengths. Colors are nearly linear
-/// in them, but the slope limit is a curved bound.
-pub(super) fn parabola_values(values: &Vector) -> Vector {
-    values.map(|r| (r - 0.5) / (r * (1.0 - r)).sqrt())
+/// A reflectance in the chart of values: by its values at three wavelengths. Colors are nearly
+/// linear in them, but the slope limit is a curved bound.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shape {
+    pub(super) parabola: Parabola,
+    /// Derivatives of the parabola at each of the wavelengths by the value there.
+    pub(super) scale: Vector,
+}
+
+/// A material in the chart of values.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    pub(super) x: Unknowns,
+    pub(super) shape: Shape,
+    pub(super) steepness: Steepness,
+}
+
+/// The greatest slope of a reflectance.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Steepness {
+    /// Its square, relative to the limit's.
+    pub(super) squared: f64,
+    /// The parabola where the slope is greatest.
+    level: f64,
 }
 
 /// Values that have a parabola.
-pub(super) fn inside(values: Vector) -> Vector {
-    values.map(|r| r.clamp(LEAST_VALUE, 1.0 - LEAST_VALUE))
-}
-
-/// How far a step may carry values.
-pub(super) fn value_bounds(values: &Vector) -> [[f64; 2]; 3] {
-    values.map(|r| [VALUE_SHARE * r, 1.0 - VALUE_SHARE * (1.0 - r)])
-}
-
-/// Derivatives of [`parabola_values`]: 2(1 + x²)^(3/2).
 #[inline(always)]
-pub(super) fn by_values(x: &Vector) -> Vector {
-    x.map(|x| {
-        let g = 1.0 + x * x;
-        2.0 * g * g.sqrt()
-    })
+pub(super) fn inside(mut values: Vector) -> Vector {
+    for r in &mut values {
+        *r = within(*r, &[LEAST_VALUE, 1.0 - LEAST_VALUE]);
+    }
+    values
+}
+
+/// How far a step may carry a value.
+#[inline(always)]
+pub(super) fn value_bounds(value: f64) -> [f64; 2] {
+    [VALUE_SHARE * value, 1.0 - VALUE_SHARE * (1.0 - value)]
 }
 
 /// The ranges of the unknowns in the chart of edges.
@@ -68,36 +85,47 @@ pub(super) fn bounds(family: Family, model: &Model) -> Bounds {
 }
 
 impl Polisher<'_> {
-    /// The square of the greatest slope relative to the limit.
-    pub(super) fn steepness_squared(&self, &[q0, q1, q2]: &Parabola) -> f64 {
+    /// The greatest slope.
+    #[inline(always)]
+    pub(super) fn steepness(&self, &[q0, q1, q2]: &Parabola) -> Steepness {
         let d = q1 * q1 - 4.0 * q2 * q0;
         let r = (9.0 / 16.0 * d * d + 5.0 * q2 * q2).sqrt();
         if r == 0.0 {
-            return 0.0;
+            return Steepness { squared: 0.0, level: q0 };
         }
         // As `Sigmoid::steepest_slope_per_nm`, without its root.
-        let p = if d > 0.0 { q2 / (r + 0.75 * d) } else { (r - 0.75 * d) / (5.0 * q2) };
-        let g = 1.0 + p * p;
+        let (over, under) = if d > 0.0 { (q2, r + 0.75 * d) } else { (r - 0.75 * d, 5.0 * q2) };
+        let level = over / under;
+        let g = 1.0 + level * level;
         let limit = self.slope_limit_per_nm * UNIT_NM;
-        (0.5 * d + r) / (5.0 * g * g * g * limit * limit)
+        Steepness { squared: (0.5 * d + r) / (5.0 * g * g * g * limit * limit), level }
     }
 
-    /// The parabola of a place in the chart of values.
+    /// The reflectance with these values at the chart wavelengths.
     #[inline(always)]
-    pub(super) fn parabola_at(&self, x: &Unknowns) -> Parabola {
-        self.sums.parabola(parabola_values(&[x[0], x[1], x[2]]))
+    pub(super) fn shape(&self, values: &Vector) -> Shape {
+        let (mut at, mut scale) = ([0.0; 3], [0.0; 3]);
+        for i in 0..3 {
+            let r = values[i];
+            let inverse = 1.0 / (r * (1.0 - r)).sqrt();
+            at[i] = (r - 0.5) * inverse;
+            scale[i] = 0.25 * inverse * inverse * inverse;
+        }
+        Shape { parabola: self.sums.parabola(at), scale }
     }
 
-    /// The edge of a place in the chart of values.
-    pub(super) fn edge_of_values(&self, x: &Unknowns) -> Edge {
-        sigmoid_of(self.parabola_at(x)).to_edge(MIDDLE_NM)
+    /// The material with these unknowns.
+    #[inline(always)]
+    pub(super) fn place(&self, x: Unknowns) -> Place {
+        let shape = self.shape(&[x[0], x[1], x[2]]);
+        Place { x, shape, steepness: self.steepness(&shape.parabola) }
     }
 
-    /// A place in the chart of values.
-    pub(super) fn point_of_values(&self, family: Family, x: Unknowns) -> Point {
-        let at = parabola_values(&[x[0], x[1], x[2]]);
-        let shaded = self.shade(family, 0.0, &self.sums.parabola(at), &[x[3], x[4], x[5]]);
-        let scale = by_values(&at);
+    /// What a place in the chart of values shows.
+    pub(super) fn point_of_values(&self, family: Family, place: &Place) -> Point {
+        let x = place.x;
+        let Shape { parabola, scale } = &place.shape;
+        let shaded = self.shade(family, 0.0, parabola, &[x[3], x[4], x[5]]);
         let mut by = [[0.0; 3]; UNKNOWNS];
         for i in 0..3 {
             let chart = self.sums.chart(i);
@@ -111,6 +139,35 @@ impl Polisher<'_> {
             by[3 + i] = shaded.by_glow[i];
         }
         Point { x, color: shaded.color, by }
+    }
+
+    /// The color alone of a place in the chart of values.
+    pub(super) fn color_of_values(&self, family: Family, place: &Place) -> Vector {
+        let [.., c, u, v] = place.x;
+        let parabola = &place.shape.parabola;
+        let (mut color, emitted) = match (family, self.cube.model()) {
+            (Family::Pair(first), Model::Dyes(dyes)) => {
+                let absorbers = [self.sums.dye(first), self.sums.dye(dyes.partner(first))];
+                let shares = [c * (1.0 - u), c * u];
+                let color = self.sums.color(parabola, absorbers, shares);
+                (in_double(color), self.emissions[first].at(u).0)
+            }
+            (Family::Bells, Model::Analytic(bells)) => {
+                let (peak_nm, shift_nm) = (u * UNIT_NM, v * UNIT_NM);
+                let [absorption, _] = &self.sums.bell_absorbers(peak_nm - shift_nm);
+                let color = self.sums.color(parabola, [absorption, absorption], [c, 0.0]);
+                let emitted = self.fitter.model().emitted_by_bells(bells, peak_nm, shift_nm);
+                (in_double(color), emitted.color)
+            }
+            _ => {
+                let clear = self.sums.clear();
+                (in_double(self.sums.color(parabola, [clear, clear], [0.0; 2])), [0.0; 3])
+            }
+        };
+        for k in 0..3 {
+            color[k] += c * emitted[k];
+        }
+        color
     }
 
     /// A place in the chart of edges: edge (t), level, slope relative to the limit.
@@ -158,18 +215,19 @@ impl Polisher<'_> {
     pub(super) fn step_along_limit(
         &self,
         here: &Point,
+        place: &Place,
         measure: &impl Measure,
         bounds: &Bounds,
         damping: f64,
     ) -> Unknowns {
-        let at = parabola_values(&[here.x[0], here.x[1], here.x[2]]);
-        let (steep, by_parabola) = steepness(self.sums.parabola(at), self.slope_limit_per_nm);
+        let Shape { parabola, scale } = &place.shape;
+        let (steep, by_parabola) = place.steepness.derived(parabola, self.slope_limit_per_nm);
         let ([r0, r1, r2], by_color) = here.measured(measure);
         let residual = [r0, r1, r2, STEEPNESS_WEIGHT * (steep - STEEPNESS_GOAL)];
-        let scale = by_values(&at);
         let mut by = [[0.0; 4]; UNKNOWNS];
         for v in 0..UNKNOWNS {
-            by[v][..3].copy_from_slice(&by_color[v]);
+            let [l, a, b] = by_color[v];
+            by[v] = [l, a, b, 0.0];
         }
         for i in 0..3 {
             by[i][3] = STEEPNESS_WEIGHT * scale[i] * dot(self.sums.chart(i), &by_parabola);
@@ -182,13 +240,13 @@ impl Polisher<'_> {
         let &[c, u, v] = glow;
         match (family, self.cube.model()) {
             (Family::Pair(first), Model::Dyes(dyes)) => {
-                let absorbers = [first, dyes.partner(first)].map(|dye| self.sums.dye(dye));
+                let absorbers = [self.sums.dye(first), self.sums.dye(dyes.partner(first))];
                 let shares = [c * (1.0 - u), c * u];
                 let shown = self.sums.reflect(center, parabola, absorbers, shares);
                 let (emitted, by_weight) = self.emissions[first].at(u);
                 let mut shaded = Shaded::of(&shown);
                 for k in 0..3 {
-                    let [a, b] = [0, 1].map(|i| f64::from(shown.seen[i][k]));
+                    let (a, b) = (f64::from(shown.seen[0][k]), f64::from(shown.seen[1][k]));
                     shaded.color[k] += c * emitted[k];
                     shaded.by_glow[0][k] = emitted[k] - (1.0 - u) * a - u * b;
                     shaded.by_glow[1][k] = c * (by_weight[k] - b + a);
@@ -220,13 +278,107 @@ impl Polisher<'_> {
     }
 }
 
+#[inline(always)]
+fn in_double([x, y, z]: [f32; 3]) -> Vector {
+    [f64::from(x), f64::from(y), f64::from(z)]
+}
+
+impl Shape {
+    /// The reflectance by its steepest point.
+    #[inline(always)]
+    pub(super) fn edge(&self) -> Edge {
+        sigmoid_of(self.parabola).to_edge(MIDDLE_NM)
+    }
+}
+
+impl Steepness {
+    /// Relative to the limit, and its derivatives by the parabola's coefficients: where the slope
+    /// is greatest it does not change with wavelength, so only the coefficients move it.
+    #[inline(always)]
+    fn derived(self, [q0, q1, _]: &Parabola, slope_limit_per_nm: f64) -> (f64, [f64; 3]) {
+        let steep = self.squared.sqrt();
+        let p = self.level;
+        let g = 1.0 + p * p;
+        // The slope is 0.5·x'(t)·g^(-3/2), and t the nearer of the two places with its size.
+        let by_linear = 0.5 / (g * g.sqrt() * slope_limit_per_nm * UNIT_NM);
+        let x_slope = (steep / by_linear).copysign(*q1);
+        let sum = q1 + x_slope;
+        let t = if sum == 0.0 { 0.0 } else { 2.0 * (p - q0) / sum };
+        let by_linear = by_linear.copysign(*q1);
+        let by_value = -3.0 * p * x_slope / g * by_linear;
+        (steep, [by_value, by_value * t + by_linear, (by_value * t + 2.0 * by_linear) * t])
+    }
+}
+
 impl Shaded {
     #[inline(always)]
     fn of(shown: &Shown) -> Self {
-        Self {
-            color: shown.color.map(f64::from),
-            by_parabola: shown.by.map(|by| by.map(f64::from)),
-            by_glow: [[0.0; 3]; 3],
+        let (mut color, mut by_parabola) = ([0.0; 3], [[0.0; 3]; 3]);
+        for k in 0..3 {
+            color[k] = f64::from(shown.color[k]);
+            for m in 0..3 {
+                by_parabola[m][k] = f64::from(shown.by[m][k]);
+            }
+        }
+        Self { color, by_parabola, by_glow: [[0.0; 3]; 3] }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parabola::steepness;
+    use upglow::{Cube, FitRecord, Node};
+    use upglow_color::Contract;
+
+    const VALUES: [Vector; 4] =
+        [[0.1, 0.5, 0.9], [0.8, 0.2, 0.6], [0.3, 0.3, 0.31], [0.999, 0.02, 0.5]];
+
+    fn black() -> Cube {
+        let (contract, fit) = (Contract::default(), FitRecord::default());
+        Cube::new(contract, Model::Reflectance, fit, 2, vec![Node::default(); 8]).unwrap()
+    }
+
+    #[test]
+    fn the_steepness_and_its_derivatives_are_those_of_the_fits() {
+        // Rounding only, of roots of numbers up to 1000.
+        const ROUNDING: f64 = 1e-7;
+        let cube = black();
+        let polisher = Polisher::new(&cube).unwrap();
+        let limit = polisher.slope_limit_per_nm;
+        for values in VALUES {
+            let parabola = polisher.shape(&values).parabola;
+            let (found, by) = polisher.steepness(&parabola).derived(&parabola, limit);
+            let (expected, expected_by) = steepness(parabola, limit);
+            assert!((found - expected).abs() < ROUNDING * expected, "{values:?}");
+            for m in 0..3 {
+                let off = (by[m] - expected_by[m]).abs();
+                assert!(off < ROUNDING * expected_by[m].abs().max(1.0), "{values:?} {m}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_parabola_moves_with_the_values_as_told() {
+        // Central differences, whose error grows with the cube of the step.
+        const STEP: f64 = 1e-6;
+        let cube = black();
+        let polisher = Polisher::new(&cube).unwrap();
+        for values in VALUES {
+            let shape = polisher.shape(&values);
+            for i in 0..3 {
+                let moved = |by: f64| {
+                    let mut values = values;
+                    values[i] += by;
+                    polisher.shape(&values).parabola
+                };
+                let (low, high) = (moved(-STEP), moved(STEP));
+                for m in 0..3 {
+                    let quotient = (high[m] - low[m]) / (2.0 * STEP);
+                    let told = shape.scale[i] * polisher.sums.chart(i)[m];
+                    assert!((told - quotient).abs() < 1e-4 * (1.0 + quotient.abs()), "{values:?}");
+                }
+            }
         }
     }
 }

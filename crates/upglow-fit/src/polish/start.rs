@@ -109,11 +109,12 @@ fn glow_around(
         Model::Dyes(dyes) if dyes.pairs() < 3 => ([RING_REACH, 0.0], f64::INFINITY),
         Model::Dyes(dyes) => ([RING_REACH, 0.0], dyes.pairs() as f64),
     };
-    let center = heaviest.hue.map(f64::from);
+    let center = [f64::from(heaviest.hue[0]), f64::from(heaviest.hue[1])];
     let (mut total, mut sum) = (0.0, [0.0; 2]);
     for (weight, corner) in corners {
         let share = weight * f64::from(corner.concentration);
-        let [mut off, other] = [0, 1].map(|i| f64::from(corner.hue[i]) - center[i]);
+        let mut off = f64::from(corner.hue[0]) - center[0];
+        let other = f64::from(corner.hue[1]) - center[1];
         if off.abs() > 0.5 * ring {
             off -= ring.copysign(off);
         }
@@ -123,7 +124,7 @@ fn glow_around(
             sum[1] += share * other;
         }
     }
-    let [u, v] = [0, 1].map(|i| center[i] + sum[i] / total);
+    let (u, v) = (center[0] + sum[0] / total, center[1] + sum[1] / total);
     match model {
         Model::Dyes(_) => {
             let (first, weight) = pair_at(u, ring);

@@ -4,15 +4,14 @@ use upglow::{Edge, Fluorescence, Node, Sigmoid};
 use upglow_color::{Goal, LinearRgb, Matrix3, Metric, Xyz};
 
 use crate::fitter::EXACT;
-use crate::parabola::{MIDDLE_NM, sigmoid_of};
+use crate::parabola::MIDDLE_NM;
 use crate::polish::Polisher;
 use crate::polish::corner::{Corners, all, mean};
 use crate::polish::descent::{
     Bounds, LEAST_DAMPING, Limits, Measure, Point, Unknowns, Vector, dot, shortest_step, solve,
+    within,
 };
-use crate::polish::place::{
-    STEEPNESS_WEIGHT, bounds, by_values, inside, parabola_values, value_bounds,
-};
+use crate::polish::place::{Place, STEEPNESS_WEIGHT, Shape, bounds, inside, value_bounds};
 use crate::polish::shine::Shown;
 use crate::polish::start::{self, Family, Glow};
 
@@ -26,6 +25,9 @@ const NEAR: f64 = 0.75 * EXACT / DE2000_PER_LAB;
 const PASSIVE_STEPS: usize = 6;
 /// Evaluations with fluorescence: three in the mean.
 const GLOWING_STEPS: usize = 7;
+/// From a color this near, in Lab, the derivatives are good for the rest of the way: each further
+/// step then leaves some hundredth. Larger takes more steps, smaller more derivatives.
+const DERIVATIVES_HOLD: f64 = 1.5;
 /// How many steps in the chart of values may lead further away before it is given up. With none, a
 /// sixth more texels go the long way.
 const MOST_SETBACKS: usize = 1;
@@ -64,8 +66,13 @@ struct LabAround {
 }
 
 impl LabAround {
-    fn new(target: Vector, white: &Vector) -> Self {
-        let [x, y, z] = [0, 1, 2].map(|k| response_slope(target[k] / white[k]) / white[k]);
+    #[inline(always)]
+    fn new(target: Vector, by_white: &Vector) -> Self {
+        let mut slopes = [0.0; 3];
+        for k in 0..3 {
+            slopes[k] = response_slope(target[k] * by_white[k]) * by_white[k];
+        }
+        let [x, y, z] = slopes;
         Self {
             target,
             a_by_x: 500.0 * x,
@@ -92,15 +99,17 @@ impl Measure for LabAround {
 
 /// The slope of Lab's compressed response, to one part in a thousand, which is plenty to weigh
 /// distances by: 1/3·v^(−2/3), and a constant below (6/29)³.
+#[inline(always)]
 fn response_slope(v: f64) -> f64 {
     const KNEE: f64 = 216.0 / 24389.0;
-    let v = v.max(KNEE);
+    const THIRD: f64 = 1.0 / 3.0;
+    let v = if v > KNEE { v } else { KNEE };
     // An inverse cube root from a third of the exponent, and two of Newton's steps.
     let mut root = f64::from_bits(0x553e_f0ff_289d_d796 - v.to_bits() / 3);
     for _ in 0..2 {
-        root *= (4.0 - v * root * root * root) / 3.0;
+        root *= THIRD * (4.0 - v * root * root * root);
     }
-    root * root / 3.0
+    THIRD * root * root
 }
 
 /// CIEDE2000 as it is around a color.
@@ -121,8 +130,9 @@ impl Linear {
 impl Measure for Linear {
     #[inline(always)]
     fn residual(&self, color: &Vector) -> Vector {
-        let moved = self.change(&[0, 1, 2].map(|k| color[k] - self.center[k]));
-        [0, 1, 2].map(|k| self.residual[k] + moved[k])
+        let (c, r) = (&self.center, &self.residual);
+        let [x, y, z] = self.change(&[color[0] - c[0], color[1] - c[1], color[2] - c[2]]);
+        [r[0] + x, r[1] + y, r[2] + z]
     }
 
     #[inline(always)]
@@ -133,14 +143,17 @@ impl Measure for Linear {
 }
 
 impl<'p, 'c, 'n> Texel<'p, 'c, 'n> {
+    #[inline(always)]
     pub(super) fn new(
         polisher: &'p Polisher<'c>,
         rgb: LinearRgb,
         corners: &'p Corners<'n>,
     ) -> Self {
-        let colorimetry = polisher.fitter.model().colorimetry();
-        let target = colorimetry.xyz_from_rgb(rgb).0;
-        let lab = LabAround::new(target, &colorimetry.white().0);
+        let mut target = [0.0; 3];
+        for (row, sum) in polisher.xyz_from_rgb.0.iter().zip(&mut target) {
+            *sum = dot(row, &rgb.0);
+        }
+        let lab = LabAround::new(target, &polisher.by_white);
         Self { polisher, rgb, target, lab, corners }
     }
 
@@ -171,21 +184,20 @@ impl<'p, 'c, 'n> Texel<'p, 'c, 'n> {
         }
         let [a, b, d] = inside(self.mean_values());
         if glow.family == Family::Passive {
-            let x = parabola_values(&[a, b, d]);
-            let shown = polisher.sums.reflect_chart(&polisher.sums.parabola(x));
-            let values = self.passive_step(&[a, b, d], &x, &shown).unwrap_or([a, b, d]);
-            let edge = sigmoid_of(polisher.sums.parabola(parabola_values(&values)));
-            return self.within_limit(edge.to_edge(MIDDLE_NM), Fluorescence::None);
+            let shape = polisher.shape(&[a, b, d]);
+            let shown = polisher.sums.reflect_chart(&shape.parabola);
+            let next = self.passive_step(&[a, b, d], &shape, &shown);
+            let shape = next.map_or(shape, |values| polisher.shape(&values));
+            return self.within_limit(shape.edge(), Fluorescence::None);
         }
         let [c, u, v] = glow.numbers;
-        let here = polisher.point_of_values(glow.family, [a, b, d, c, u, v]);
-        let mut bounds = bounds(glow.family, polisher.cube.model());
-        bounds[..3].copy_from_slice(&value_bounds(&[a, b, d]));
-        let steep = polisher.steepness_squared(&polisher.parabola_at(&here.x));
-        let (x, _) = self.glowing_step(&here, steep, &bounds);
-        let [.., c, u, v] = x;
+        let place = polisher.place([a, b, d, c, u, v]);
+        let here = polisher.point_of_values(glow.family, &place);
+        let bounds = bounds(glow.family, polisher.cube.model());
+        let place = self.glowing_step(&here, &place, bounds);
+        let [.., c, u, v] = place.x;
         let fluorescence = Glow { family: glow.family, numbers: [c, u, v] }.fluorescence();
-        self.within_limit(polisher.edge_of_values(&x), fluorescence)
+        self.within_limit(place.shape.edge(), fluorescence)
     }
 
     /// A reflectance made as soft as the limit demands.
@@ -212,40 +224,37 @@ impl<'p, 'c, 'n> Texel<'p, 'c, 'n> {
         let sums = &self.polisher.sums;
         let mut values = inside(self.mean_values());
         for _ in 0..PASSIVE_STEPS {
-            let x = parabola_values(&values);
-            let parabola = sums.parabola(x);
-            let shown = sums.reflect_chart(&parabola);
-            let color = shown.color.map(f64::from);
-            let lab = self.lab.residual(&color);
+            let shape = self.polisher.shape(&values);
+            let shown = sums.reflect_chart(&shape.parabola);
+            let [x, y, z] = shown.color;
+            let lab = self.lab.residual(&[f64::from(x), f64::from(y), f64::from(z)]);
             let squared = dot(&lab, &lab);
             if squared <= NEAR * NEAR {
-                if self.polisher.steepness_squared(&parabola) > 1.0 {
+                if self.polisher.steepness(&shape.parabola).squared > 1.0 {
                     return None;
                 }
-                let edge = sigmoid_of(parabola).to_edge(MIDDLE_NM);
-                return Some(node(edge, Fluorescence::None, squared.sqrt()));
+                return Some(node(shape.edge(), Fluorescence::None, squared.sqrt()));
             }
-            values = self.passive_step(&values, &x, &shown)?;
+            values = self.passive_step(&values, &shape, &shown)?;
         }
         None
     }
 
-    /// Newton's step from `values`, whose parabola is `x` at the chart wavelengths.
-    fn passive_step(&self, values: &Vector, x: &Vector, shown: &Shown) -> Option<Vector> {
-        let scale = by_values(x);
+    /// Newton's step from `values`.
+    #[inline(always)]
+    fn passive_step(&self, values: &Vector, shape: &Shape, shown: &Shown) -> Option<Vector> {
         let mut rows = [[0.0; 3]; 3];
         let mut residual = [0.0; 3];
         for k in 0..3 {
             residual[k] = f64::from(shown.color[k]) - self.target[k];
             for i in 0..3 {
-                rows[k][i] = scale[i] * f64::from(shown.by[i][k]);
+                rows[k][i] = shape.scale[i] * f64::from(shown.by[i][k]);
             }
         }
         let step = solve(&rows, &residual)?;
-        let bounds = value_bounds(values);
         let mut next = *values;
         for i in 0..3 {
-            next[i] = (values[i] - step[i]).max(bounds[i][0]).min(bounds[i][1]);
+            next[i] = within(values[i] - step[i], &value_bounds(values[i]));
         }
         Some(next)
     }
@@ -254,55 +263,52 @@ impl<'p, 'c, 'n> Texel<'p, 'c, 'n> {
     fn glowing(&self, glow: &Glow) -> Option<Node> {
         let polisher = self.polisher;
         let family = glow.family;
-        let mut bounds = bounds(family, polisher.cube.model());
+        let bounds = bounds(family, polisher.cube.model());
         let ([a, b, d], [c, u, v]) = (inside(self.mean_values()), glow.numbers);
-        let mut here = polisher.point_of_values(family, [a, b, d, c, u, v]);
-        let mut steep = polisher.steepness_squared(&polisher.parabola_at(&here.x));
+        let mut place = polisher.place([a, b, d, c, u, v]);
+        let mut here = polisher.point_of_values(family, &place);
+        let mut norm = here.norm(&self.lab);
         let mut setbacks = 0;
         for _ in 0..GLOWING_STEPS {
-            if here.norm(&self.lab) <= NEAR && steep <= 1.0 {
-                return Some(self.glowing_node(family, &here));
+            let steep = place.steepness.squared;
+            if norm <= NEAR && steep <= 1.0 {
+                return Some(glowing_node(family, &place, norm));
             }
-            let values = [here.x[0], here.x[1], here.x[2]];
-            bounds[..3].copy_from_slice(&value_bounds(&values));
-            let (next, next_steep) = self.glowing_step(&here, steep, &bounds);
-            let there = polisher.point_of_values(family, next);
-            if self.merit(&there, next_steep) >= self.merit(&here, steep) {
+            let next = self.glowing_step(&here, &place, bounds);
+            let there = if norm <= DERIVATIVES_HOLD {
+                let color = polisher.color_of_values(family, &next);
+                Point { x: next.x, color, by: here.by }
+            } else {
+                polisher.point_of_values(family, &next)
+            };
+            let next_norm = there.norm(&self.lab);
+            if merit(next_norm, next.steepness.squared) >= merit(norm, steep) {
                 setbacks += 1;
                 if setbacks > MOST_SETBACKS {
                     return None;
                 }
             }
-            (here, steep) = (there, next_steep);
+            (here, place, norm) = (there, next, next_norm);
         }
         None
     }
 
-    /// Where a step in the chart of values leads, and the square of the steepness there.
-    fn glowing_step(&self, here: &Point, steep: f64, bounds: &Bounds) -> (Unknowns, f64) {
-        let steepness =
-            |x: &Unknowns| self.polisher.steepness_squared(&self.polisher.parabola_at(x));
-        if steep <= 1.0 {
+    /// Where a step in the chart of values leads; `bounds` are those of the fluorescence.
+    #[inline(always)]
+    fn glowing_step(&self, here: &Point, place: &Place, mut bounds: Bounds) -> Place {
+        for i in 0..3 {
+            bounds[i] = value_bounds(place.x[i]);
+        }
+        if place.steepness.squared <= 1.0 {
             let (residual, by) = here.measured(&self.lab);
-            let next = shortest_step(&here.x, &residual, &by, bounds, LEAST_DAMPING);
-            let next_steep = steepness(&next);
-            if next_steep <= 1.0 {
-                return (next, next_steep);
+            let next = shortest_step(&here.x, &residual, &by, &bounds, LEAST_DAMPING);
+            let next = self.polisher.place(next);
+            if next.steepness.squared <= 1.0 {
+                return next;
             }
         }
-        let next = self.polisher.step_along_limit(here, &self.lab, bounds, LEAST_DAMPING);
-        (next, steepness(&next))
-    }
-
-    /// What a point lacks in color and slope.
-    fn merit(&self, point: &Point, steepness_squared: f64) -> f64 {
-        point.norm(&self.lab) + STEEPNESS_WEIGHT * (steepness_squared - 1.0).max(0.0)
-    }
-
-    fn glowing_node(&self, family: Family, found: &Point) -> Node {
-        let [.., c, u, v] = found.x;
-        let fluorescence = Glow { family, numbers: [c, u, v] }.fluorescence();
-        node(self.polisher.edge_of_values(&found.x), fluorescence, found.norm(&self.lab))
+        let polisher = self.polisher;
+        polisher.place(polisher.step_along_limit(here, place, &self.lab, &bounds, LEAST_DAMPING))
     }
 
     /// The nearest material that the starts lead to, in the chart of edges.
@@ -320,7 +326,7 @@ impl<'p, 'c, 'n> Texel<'p, 'c, 'n> {
         }
         if !is_hopeless {
             let [a, b, d] = inside(self.mean_values());
-            let edge = self.polisher.edge_of_values(&[a, b, d, 0.0, 0.0, 0.0]);
+            let edge = self.polisher.shape(&[a, b, d]).edge();
             best = best.or(self.approach(&goal, edge, glow));
         }
         let heaviest = self.corners.iter().fold(0.0, |most: f64, (weight, _)| most.max(*weight));
@@ -373,8 +379,15 @@ impl<'p, 'c, 'n> Texel<'p, 'c, 'n> {
         Found { node: Node::new(edge, fluorescence, de2000), de2000 }
     }
 
+    #[inline(always)]
     fn mean_values(&self) -> Vector {
-        [0, 1, 2].map(|i| mean(self.corners, |c| c.values[i]))
+        let mut values = [0.0; 3];
+        for (weight, corner) in self.corners {
+            for i in 0..3 {
+                values[i] += weight * f64::from(corner.values[i]);
+            }
+        }
+        values
     }
 }
 
@@ -390,6 +403,17 @@ impl Found {
     fn or(self, other: Self) -> Self {
         if other.de2000 < self.de2000 { other } else { self }
     }
+}
+
+/// What a place lacks in color and slope.
+fn merit(norm: f64, steepness_squared: f64) -> f64 {
+    norm + STEEPNESS_WEIGHT * (steepness_squared - 1.0).max(0.0)
+}
+
+fn glowing_node(family: Family, found: &Place, lab_distance: f64) -> Node {
+    let [.., c, u, v] = found.x;
+    let fluorescence = Glow { family, numbers: [c, u, v] }.fluorescence();
+    node(found.shape.edge(), fluorescence, lab_distance)
 }
 
 fn node(edge: Edge, fluorescence: Fluorescence, lab_distance: f64) -> Node {
