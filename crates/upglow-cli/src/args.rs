@@ -265,7 +265,11 @@ impl FromStr for ExportFormat {
 fn named<T: Copy>(what: &str, known: &[(&str, T)], name: &str) -> Result<T, String> {
     known.iter().find(|(word, _)| *word == name).map(|(_, value)| *value).ok_or_else(|| {
         let words: Vec<&str> = known.iter().map(|(word, _)| *word).collect();
-        format!("unknown {what} {name:?}, expected {}", words.join(" or "))
+        let words = match &words[..] {
+            [rest @ .., last] if !rest.is_empty() => format!("{} or {last}", rest.join(", ")),
+            words => words.concat(),
+        };
+        format!("unknown {what} {name:?}, expected {words}")
     })
 }
 

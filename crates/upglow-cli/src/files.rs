@@ -54,12 +54,15 @@ pub(crate) fn check_output(path: &Path) -> Result<(), Failure> {
 
 /// Checks that writing `output` does not replace the cube that was read from `input`.
 pub(crate) fn check_distinct(input: &Path, output: &Path) -> Result<(), Failure> {
-    match (input.canonicalize(), output.canonicalize()) {
-        (Ok(input), Ok(found)) if input == found => {
-            Err(Failure::file(output, "the cube itself, expected another file to write"))
-        }
-        _ => Ok(()),
+    if is_same(input, output) {
+        return Err(Failure::file(output, "the cube itself, expected another file to write"));
     }
+    Ok(())
+}
+
+/// Whether two paths lead to one file or folder that is there.
+pub(crate) fn is_same(a: &Path, b: &Path) -> bool {
+    matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }
 
 /// Writes a file that appears whole or not at all.

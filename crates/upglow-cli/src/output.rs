@@ -29,17 +29,24 @@ impl Format {
                 .map(|json| json + "\n")
                 .map_err(|error| Failure::input("standard output", error))?,
         };
-        let mut stdout = io::stdout().lock();
-        stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()).map_err(|error| match error
-            .kind()
-        {
-            io::ErrorKind::BrokenPipe => Failure::OutputClosed,
-            _ => {
-                let found = io_message(&error);
-                Failure::input("standard output", format_args!("{found}, expected room"))
-            }
-        })
+        print(&text)
     }
+
+    /// A blank line before report `number`, from 0, of several for people.
+    pub(crate) fn separate(self, number: usize) -> Result<(), Failure> {
+        if self == Self::Text && number > 0 { print("\n") } else { Ok(()) }
+    }
+}
+
+fn print(text: &str) -> Result<(), Failure> {
+    let mut stdout = io::stdout().lock();
+    stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()).map_err(|error| {
+        if error.kind() == io::ErrorKind::BrokenPipe {
+            return Failure::OutputClosed;
+        }
+        let found = io_message(&error);
+        Failure::input("standard output", format_args!("{found}, expected room"))
+    })
 }
 
 /// Says on standard error what the user should know although the work goes on.

@@ -26,6 +26,7 @@ pub(crate) fn find(inputs: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     let mut found = Vec::new();
     for input in inputs {
         if !input.is_dir() {
+            check_there(input, "a picture")?;
             found.push(input.clone());
             continue;
         }
@@ -40,6 +41,16 @@ pub(crate) fn find(inputs: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
         found.extend(pictures);
     }
     Ok(found)
+}
+
+/// Checks that a file that was named can be read, before others are worked on.
+pub(crate) fn check_there(path: &Path, expected: &str) -> Result<(), Failure> {
+    let found = match std::fs::File::open(path) {
+        Ok(_) if path.is_dir() => "a folder".to_owned(),
+        Ok(_) => return Ok(()),
+        Err(error) => io_message(&error),
+    };
+    Err(Failure::file(path, format_args!("{found}, expected {expected}")))
 }
 
 fn pictures_in(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
@@ -62,17 +73,26 @@ fn is_picture(path: &Path) -> bool {
     SUFFIXES.iter().any(|known| known.eq_ignore_ascii_case(suffix))
 }
 
-/// Where what is made of each input goes: to the file `output` for one picture, if that is no
-/// folder and ends in `exr`; else into the folder `output`, named after the picture and `form`, so
+/// Where what is made of each input goes: to the file `output` for one picture, if that ends in
+/// `exr` and is no folder; else into the folder `output`, named after the picture and `form`, so
 /// that the tile number of a UDIM stays where it was.
 pub(crate) fn outputs(
     inputs: &[PathBuf],
     output: &Path,
     form: &str,
 ) -> Result<Vec<PathBuf>, Failure> {
-    let is_file = output.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("exr"));
-    if inputs.len() == 1 && is_file && !output.is_dir() {
-        return Ok(vec![output.to_owned()]);
+    let is_exr = output.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("exr"));
+    if is_picture(output) && !output.is_dir() {
+        return match inputs.len() {
+            1 if is_exr => Ok(vec![output.to_owned()]),
+            1 => {
+                Err(Failure::file(output, "no EXR, expected a file that ends in exr, or a folder"))
+            }
+            count => Err(Failure::file(
+                output,
+                format_args!("one file for {count} pictures, expected a folder"),
+            )),
+        };
     }
     let mut outputs: Vec<PathBuf> = Vec::new();
     for input in inputs {
@@ -125,6 +145,8 @@ mod tests {
         let two = [PathBuf::from("a.png"), PathBuf::from("b.png")];
         let out = Path::new("out.exr");
         assert_eq!(outputs(&one, out, "material"), Ok(vec![PathBuf::from("out.exr")]));
+        assert!(outputs(&two, out, "material").is_err());
+        assert!(outputs(&one, Path::new("out.png"), "material").is_err());
         let names = outputs(&two, Path::new("out"), "radiance").unwrap();
         assert_eq!(names[1], PathBuf::from("out/b.radiance.exr"));
         let twins = [PathBuf::from("x/a.png"), PathBuf::from("y/a.tif")];

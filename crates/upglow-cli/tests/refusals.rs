@@ -204,7 +204,7 @@ fn outputs_that_cannot_be_written_are_refused_before_the_work() {
         // Minutes of work, were it to start.
         let found = folder.refused(1, &format!("build --resolution 256 -o {path}"));
         assert!(found.starts_with(line), "{found}");
-        let found = folder.refused(1, &format!("export cube {path}"));
+        let found = folder.refused(1, &format!("export cube {path} --format csv"));
         assert!(found.starts_with(line), "{found}");
         let found = folder.refused(1, &format!("color cube 0 0 0 --plot {path}"));
         assert!(found.starts_with(line), "{found}");
@@ -215,7 +215,7 @@ fn outputs_that_cannot_be_written_are_refused_before_the_work() {
 fn a_cube_is_not_replaced_by_what_is_made_of_it() {
     let folder = folder_with_cube();
     let before = folder.read("cube");
-    let line = folder.refused(1, "export cube ./cube");
+    let line = folder.refused(1, "export cube ./cube --format csv");
     assert_eq!(line, "./cube: the cube itself, expected another file to write");
     folder.refused(1, "color cube 0 0 0 --plot cube");
     assert_eq!(folder.read("cube"), before);

@@ -46,10 +46,16 @@ mod stopped {
         mask >> (signal - 1) & 1 == 1
     }
 
-    #[expect(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
     fn stop(words: &str, name: &str, signal: u32) {
         let folder = Folder::new();
         folder.done("build --resolution 2 -o old");
+        stop_in(&folder, words, name, signal);
+    }
+
+    /// Starts the program in a folder and stops it; nothing there may change.
+    #[expect(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
+    fn stop_in(folder: &Folder, words: &str, name: &str, signal: u32) {
+        let names = folder.names();
         let child = Command::new(program())
             .args(words.split_whitespace())
             .current_dir(folder.path())
@@ -71,13 +77,26 @@ mod stopped {
         assert_eq!(one_line(&stderr), "stopped, nothing was written");
         assert!(output.stdout.is_empty());
         assert!(start.elapsed() < PATIENCE, "it took too long to stop");
-        assert_eq!(folder.names(), ["old"]);
+        assert_eq!(folder.names(), names);
     }
 
     #[test]
     fn a_build_leaves_no_file() {
         stop("build --resolution 128 -o cube", "-INT", 2);
         stop("build --resolution 128 -o cube", "-TERM", 15);
+    }
+
+    #[test]
+    fn a_bake_leaves_no_file_and_the_old_one_as_it_was() {
+        let folder = Folder::new();
+        folder.done("build --resolution 2 -o cube");
+        folder.done("examples");
+        folder.write("out.exr", "old");
+        // Tens of seconds of work, in bands of 64 rows.
+        let words = "bake cube examples/dusk.exr -o out.exr --as spectral --bands 300:830:5";
+        stop_in(&folder, words, "-INT", 2);
+        stop_in(&folder, words, "-TERM", 15);
+        assert_eq!(folder.read("out.exr"), b"old");
     }
 
     #[test]

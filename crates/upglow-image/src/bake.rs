@@ -19,9 +19,8 @@ use self::material::MaterialMaker;
 use self::radiance::RadianceMaker;
 use self::spectral::SpectralMaker;
 use crate::{
-    Alpha, Assumed, Attributes, Band, CompactError, Compression, ExrDescription, ExrWriter,
-    LinearPicture, LinearPictureError, Picture, PictureError, Repair, Sample, WriteExrError,
-    greatest_value,
+    Assumed, Attributes, Band, CompactError, Compression, ExrDescription, ExrWriter, LinearPicture,
+    LinearPictureError, Picture, PictureError, Repair, Sample, WriteExrError, greatest_value,
 };
 
 /// What becomes of each texel.
@@ -59,7 +58,8 @@ pub struct BakeOptions {
     pub assumed: Assumed,
     /// What to do with texels outside the cube; `None` refuses them.
     pub repair: Option<Repair>,
-    /// Half or float.
+    /// Half or float. The compact form of lobes is always float: rounded positions on the ring
+    /// of dyes are other colors.
     pub sample: Sample,
 }
 
@@ -125,6 +125,11 @@ fn and_others(count: usize) -> String {
     }
 }
 
+/// The form of a baked file, by its attributes: material, spectral or radiance.
+pub fn baked_form(attributes: &Attributes) -> Option<&str> {
+    attributes.get(attributes::FORM)?.as_text()
+}
+
 /// Makes the channels of one form from linear RGB in the cube's space, each component in 0..=1.
 trait Maker: Debug + Sync {
     /// Names, in the order in which planes are filled.
@@ -135,9 +140,15 @@ trait Maker: Debug + Sync {
 
     fn compression(&self) -> Compression;
 
-    /// Whether the channels are light, which alpha dims, and not properties of a material.
+    /// Whether the channels are light, which OpenEXR has multiplied by alpha, and not properties of
+    /// a material.
     fn is_light(&self) -> bool {
         false
+    }
+
+    /// The kind of number that holds the channels, where the caller asked for `asked`.
+    fn sample(&self, asked: Sample) -> Sample {
+        asked
     }
 
     /// Fills one row of each channel, `[channel][texel]`.
@@ -166,7 +177,7 @@ impl<'c> Baker<'c> {
     /// [`BakeError`] if the cube has no such form.
     pub fn new(cube: &'c Cube, form: Form, options: BakeOptions) -> Result<Self, BakeError> {
         let maker: Box<dyn Maker + 'c> = match (form, cube.model()) {
-            (Form::Material(way), _) => Box::new(MaterialMaker::new(cube, way)?),
+            (Form::Material(way), _) => Box::new(MaterialMaker::new(cube, way, options.sample)?),
             (Form::Spectral { grid, compact: false }, _) => {
                 Box::new(SpectralMaker::new(cube, grid))
             }
@@ -206,7 +217,7 @@ impl<'c> Baker<'c> {
                 conversion.apply(&mut band.rgb);
             }
             baked.repaired += mending.mend(&mut band)?;
-            let planes = self.planes(&band, picture.picture().alpha());
+            let planes = self.planes(&band);
             baked.channels = planes.len();
             writer.write_band(&planes.iter().map(Vec::as_slice).collect::<Vec<_>>())?;
             let done = band.first_row + band.rows();
@@ -241,7 +252,7 @@ impl<'c> Baker<'c> {
     }
 
     /// The channels of a band, alpha last.
-    fn planes(&self, band: &Band, alpha: Option<Alpha>) -> Vec<Vec<f32>> {
+    fn planes(&self, band: &Band) -> Vec<Vec<f32>> {
         let count = self.maker.channels().len();
         let rows: Vec<Vec<f32>> = band
             .rgb
@@ -259,7 +270,7 @@ impl<'c> Baker<'c> {
         };
         let mut planes: Vec<Vec<f32>> = (0..count).into_par_iter().map(of_channel).collect();
         if let Some(values) = &band.alpha {
-            if self.maker.is_light() && alpha == Some(Alpha::Associated) {
+            if self.maker.is_light() {
                 let associate = |plane: &mut Vec<f32>| {
                     plane.iter_mut().zip(values).for_each(|(v, a)| *v *= a);
                 };
@@ -274,7 +285,7 @@ impl<'c> Baker<'c> {
         let alpha = picture.has_alpha().then(|| "A".to_owned());
         let channels = self.maker.channels().into_iter().chain(alpha);
         let mut description = ExrDescription::new(picture.size(), channels);
-        description.sample = self.options.sample;
+        description.sample = self.maker.sample(self.options.sample);
         description.compression = self.maker.compression();
         description.attributes = self.maker.attributes();
         description.windows = picture.windows();

@@ -56,7 +56,7 @@ mod repair;
 mod spectral_layout;
 mod spectral_picture;
 
-pub use bake::{BakeError, BakeOptions, Baked, Baker, Form, MaterialWay};
+pub use bake::{BakeError, BakeOptions, Baked, Baker, Form, MaterialWay, baked_form};
 pub use band::Band;
 pub use check::{
     CheckError, CheckReport, CheckedPicture, Checker, Counts, CubeOpinion, Flaw, Judge, JudgeError,

@@ -5,12 +5,14 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use upglow::{DyeModel, DyeOptions, DyeSet, Fluorescence, Material, Mixture, Model, Sigmoid};
-use upglow_color::Grid;
+use upglow::{Cube, DyeModel, DyeOptions, DyeSet, Fluorescence, Material, Mixture, Model, Sigmoid};
+use upglow_color::{Contract, Grid, Illuminant, RgbSpace};
+use upglow_fit::{FitOptions, Unwatched, build_cube};
 use upglow_image::{
-    Attributes, BISPECTRAL_UNIT, BispectralUnit, CompactForm, CompactLayout, Depth, EMISSIVE_UNITS,
-    ExrDescription, ExrWriter, LAYOUT_VERSION, LAYOUT_VERSION_VALUE, Rule, Sample, Severity,
-    SpectralChannel, SpectralPicture, lint,
+    Assumed, Attributes, BISPECTRAL_UNIT, BakeOptions, Baker, BispectralUnit, CompactForm,
+    CompactLayout, Depth, EMISSIVE_UNITS, ExrDescription, ExrReader, ExrWriter, Form,
+    LAYOUT_VERSION, LAYOUT_VERSION_VALUE, MaterialWay, Rule, Sample, Severity, SpectralChannel,
+    SpectralPicture, chromaticities, lint,
 };
 
 const SIZE: [usize; 2] = [3, 2];
@@ -215,10 +217,97 @@ fn other_programs_read_our_files() {
     }
     let list = folder.path().join("expected.txt");
     std::fs::write(&list, expected).unwrap();
+    agrees(&python, "", &[&full, &compact, &list]);
+}
+
+/// Runs the reader of others' programs, which must agree with ours.
+fn agrees(python: &Path, mode: &str, files: &[&Path]) {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/readers/check_exr.py");
-    let output = Command::new(python).arg(script).args([&full, &compact, &list]).output().unwrap();
+    let mode = (!mode.is_empty()).then_some(mode);
+    let output = Command::new(python).arg(script).args(mode).args(files).output().unwrap();
     let said = String::from_utf8_lossy(&output.stdout);
     let failed = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{said}{failed}");
     print!("{said}");
+}
+
+/// A baked file of six colors, and the cube it was made with.
+fn baked(folder: &Path, name: &str, form: Form, model: &Model) -> (PathBuf, Cube) {
+    let input = folder.join("colors.exr");
+    let space = ("chromaticities".to_owned(), chromaticities(&RgbSpace::default()));
+    let names = ["R", "G", "B"].map(String::from);
+    let colors = [
+        [0.5, 0.5, 0.5],
+        [0.9, 0.0, 0.9],
+        [0.1, 0.5, 0.6],
+        [1.0, 1.0, 1.0],
+        [0.7, 0.3, 0.1],
+        [0.2, 0.6, 0.1],
+    ];
+    write(&input, &names, Attributes::from([space]), &colors.map(|c| c.to_vec()));
+    let cube =
+        build_cube(&Contract::default(), model, FitOptions::default(), 5, &Unwatched).unwrap();
+    let options = BakeOptions { assumed: Assumed::default(), repair: None, sample: Sample::Float };
+    let output = folder.join(name);
+    Baker::new(&cube, form, options).unwrap().bake(&input, &output, &Unwatched).unwrap();
+    (output, cube)
+}
+
+/// Column, row, channel and value of each sample, as we read it.
+fn samples(path: &Path) -> String {
+    let mut reader = ExrReader::open(path).unwrap();
+    let numbers: Vec<usize> = (0..reader.channels().len()).collect();
+    let planes = reader.read_rows(0..SIZE[1], &numbers).unwrap();
+    let line = |c: usize, i: usize| {
+        let (x, y, name) = (i % SIZE[0], i / SIZE[0], &reader.channels()[c].name);
+        format!("{x} {y} {name} {}\n", planes[c][i])
+    };
+    numbers.iter().flat_map(|&c| (0..6).map(move |i| (c, i))).map(|(c, i)| line(c, i)).collect()
+}
+
+#[test]
+fn other_programs_read_baked_materials_and_light() {
+    let Some(python) = python() else {
+        println!("skipped: other_programs_read_baked_materials_and_light, no python3 with OpenEXR");
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let light = Illuminant::named("A").unwrap();
+    let forms = [Form::Material(MaterialWay::Polished), Form::Radiance { light }];
+    for (form, channels) in forms.into_iter().zip([6, 3]) {
+        let (path, _) = baked(folder.path(), "baked.exr", form, &Model::Dyes(model()));
+        let list = folder.path().join("expected.txt");
+        let expected = samples(&path);
+        assert_eq!(expected.lines().count(), 6 * channels);
+        std::fs::write(&list, expected).unwrap();
+        agrees(&python, "--samples", &[&path, &list]);
+    }
+}
+
+#[test]
+fn colour_science_integrates_a_baked_reflectance_to_our_color() {
+    let Some(python) = python() else {
+        println!("skipped: colour_science_integrates_a_baked_reflectance_to_our_color, no python3");
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    // The range of the observer's table there.
+    let grid = Grid::try_new(360, 830, 1).unwrap();
+    let form = Form::Spectral { grid, compact: false };
+    let (path, cube) = baked(folder.path(), "fine.exr", form, &Model::Reflectance);
+    let sums = cube.contract().on(grid);
+    let lines = grid.wavelengths_nm().zip(sums.irradiance());
+    let light: String = lines.map(|(nm, power)| format!("{nm} {power}\n")).collect();
+    let mut picture = SpectralPicture::open(&path).unwrap();
+    let mut colors = String::new();
+    for (x, y) in (0..6).map(|i| (i % SIZE[0], i / SIZE[0])) {
+        let texel = picture.at(x, y).unwrap();
+        let bands = texel.reflectance.iter().map(|&(_, share)| f64::from(share));
+        let [r, g, b] = sums.xyz_from_reflectance(bands).0;
+        colors += &format!("{x} {y} {r} {g} {b}\n");
+    }
+    let [lights, list] = ["light.txt", "colors.txt"].map(|name| folder.path().join(name));
+    std::fs::write(&lights, light).unwrap();
+    std::fs::write(&list, colors).unwrap();
+    agrees(&python, "--colors", &[&path, &lights, &list]);
 }

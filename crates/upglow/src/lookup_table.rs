@@ -82,7 +82,7 @@ pub(crate) fn axis(cube: &Cube) -> u32 {
 impl PackedNode {
     fn new(cube: &Cube, index: usize) -> Self {
         let node = &cube.nodes()[index];
-        let parabola = bounded_parabola(node.edge());
+        let parabola = node.edge().bounded_parabola();
         let fluorescence = cube.node_material(index).fluorescence;
         let returned_nm =
             fluorescence.lobes(cube.model()).map(|lobe: Lobe<'_>| lobe.returned_total_nm()).sum();
@@ -100,19 +100,23 @@ impl PackedNode {
     }
 }
 
-/// The edge's wavelength and the coefficients around it, within bounds and never not a number.
-fn bounded_parabola(edge: Edge) -> [f64; 4] {
-    let ([mut constant, mut linear, quadratic], mut edge_nm) = (edge.parabola(), edge.edge_nm);
-    if edge_nm.abs() > FARTHEST_EDGE_NM {
-        let d = CENTER_NM - edge_nm;
-        constant += d * (linear + d * quadratic);
-        linear += 2.0 * d * quadratic;
-        edge_nm = CENTER_NM;
+impl Edge {
+    /// The wavelength of the edge (nm) and the coefficients of 1, d and d² at the distance d from
+    /// it, for evaluation in single precision: an edge far from all light is restated around
+    /// 550 nm, coefficients that would overflow are bounded, and none is not a number.
+    pub fn bounded_parabola(self) -> [f64; 4] {
+        let ([mut constant, mut linear, quadratic], mut edge_nm) = (self.parabola(), self.edge_nm);
+        if edge_nm.abs() > FARTHEST_EDGE_NM {
+            let d = CENTER_NM - edge_nm;
+            constant += d * (linear + d * quadratic);
+            linear += 2.0 * d * quadratic;
+            edge_nm = CENTER_NM;
+        }
+        let [c, l, q] = GREATEST_COEFFICIENTS;
+        // `max` takes the number where the other is none.
+        let within = |value: f64, limit: f64| value.max(-limit).min(limit);
+        [edge_nm, within(constant, c), within(linear, l), within(quadratic, q)]
     }
-    let [c, l, q] = GREATEST_COEFFICIENTS;
-    // `max` takes the number where the other is none.
-    let within = |value: f64, limit: f64| value.max(-limit).min(limit);
-    [edge_nm, within(constant, c), within(linear, l), within(quadratic, q)]
 }
 
 impl LookupTable {

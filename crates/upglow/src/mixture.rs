@@ -62,6 +62,11 @@ impl<'m> Mixture<'m> {
         self.reflectance(in_nm) + fluorescent
     }
 
+    /// The integral, over all incident wavelengths, of what fluorescence gives back of them; nm.
+    pub fn returned_total_nm(&self) -> f64 {
+        self.lobes().map(|(w, lobe)| w * lobe.returned_total_nm()).sum()
+    }
+
     /// The re-radiation (Donaldson) matrix over the bands around `grid`'s wavelengths.
     ///
     /// `[outgoing][incident]`: the share of the energy that comes in at the incident wavelength

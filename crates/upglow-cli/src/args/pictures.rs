@@ -98,7 +98,7 @@ pub(crate) struct ReadArgs {
     /// Spectral, bispectral or compact EXR
     pub(crate) file: PathBuf,
     /// Column and row of the texel, from the upper left, first 0,0
-    #[arg(long, value_name = "X,Y", value_parser = position)]
+    #[arg(long, value_name = "X,Y", value_parser = position, allow_hyphen_values = true)]
     pub(crate) at: [usize; 2],
 }
 

@@ -42,16 +42,17 @@ pub(crate) fn run(args: &BakeArgs, format: Format, quiet: bool) -> Result<(), Fa
     };
     let inputs = pictures::find(&args.inputs)?;
     let outputs = pictures::outputs(&inputs, &args.output, args.form.name())?;
-    check_outputs(&inputs, &outputs)?;
+    check_outputs(args, &inputs, &outputs)?;
     let cube = files::read_cube(&args.cube)?;
     let bar = Bar::start(quiet);
     let baker = Baker::new(&cube, form, options).map_err(|error| refused(error, &args.cube))?;
-    for (input, output) in inputs.iter().zip(&outputs) {
+    for (number, (input, output)) in inputs.iter().zip(&outputs).enumerate() {
         let start = Instant::now();
         let baked = on_threads(args.threads, || baker.bake(input, output, &bar))?;
         bar.finish();
         let baked = baked.map_err(|error| failure(error, input, output))?;
         let time_s = start.elapsed().as_secs_f64();
+        format.separate(number)?;
         format.print(&BakeReport::new(input, output, args.form, &baked, time_s))?;
     }
     Ok(())
@@ -113,14 +114,24 @@ fn repair(args: &BakeArgs) -> Result<Option<Repair>, Failure> {
     repair.map_err(|error| Failure::option("--repair", error))
 }
 
-/// Makes the folder of the outputs, and checks all of them before the first is baked.
-fn check_outputs(inputs: &[PathBuf], outputs: &[PathBuf]) -> Result<(), Failure> {
-    for (input, output) in inputs.iter().zip(outputs) {
+/// Makes the folders of the outputs, and checks all of them before the first is baked.
+fn check_outputs(args: &BakeArgs, inputs: &[PathBuf], outputs: &[PathBuf]) -> Result<(), Failure> {
+    if args.inputs.iter().any(|input| input.is_dir() && files::is_same(input, &args.output)) {
+        let message = "the folder of the pictures, expected another: the next run would bake what \
+                       this one makes";
+        return Err(Failure::file(&args.output, message));
+    }
+    for output in outputs {
+        if let Some(input) = inputs.iter().find(|input| files::is_same(input, output)) {
+            let input = input.display();
+            let message = format_args!("the picture {input} itself, expected another file");
+            return Err(Failure::file(output, message));
+        }
+        files::check_distinct(&args.cube, output)?;
         if let Some(folder) = output.parent().filter(|folder| !folder.as_os_str().is_empty()) {
             files::make_folder(folder)?;
         }
         files::check_output(output)?;
-        files::check_distinct(input, output)?;
     }
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! `upglow check`: what pictures ask of materials.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use upglow::Cube;
@@ -42,6 +42,9 @@ struct PictureReport {
     flaws: Vec<FlawReport>,
     worst: Vec<WorstReport>,
     cube: Option<CubeReport>,
+    heat_map: Option<String>,
+    /// The page that all pictures are on.
+    page: Option<String>,
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -76,7 +79,7 @@ struct CubeReport {
 
 pub(crate) fn run(args: &CheckArgs, format: Format, quiet: bool) -> Result<(), Failure> {
     let inputs = pictures::find(&args.inputs)?;
-    check_outputs(args, inputs.len())?;
+    check_outputs(args, &inputs)?;
     let assumed = pictures::assumed(&args.picture)?;
     let cube = args.cube.as_deref().map(files::read_cube).transpose()?;
     let contract = contract(args, cube.as_ref())?;
@@ -106,24 +109,37 @@ pub(crate) fn run(args: &CheckArgs, format: Format, quiet: bool) -> Result<(), F
         files::write(path, &report.heat.to_png())?;
     }
     let light = contract.illuminant.name();
-    for (name, (space, report)) in names.iter().zip(&found) {
-        format.print(&PictureReport::new(name, space, light, cube_name.as_deref(), report))?;
+    for (number, (name, (space, report))) in names.iter().zip(&found).enumerate() {
+        format.separate(number)?;
+        let shown = |path: &Option<PathBuf>| path.as_ref().map(|path| path.display().to_string());
+        format.print(&PictureReport {
+            heat_map: shown(&args.heat_map),
+            page: shown(&args.output),
+            ..PictureReport::new(name, space, light, cube_name.as_deref(), report)
+        })?;
     }
     Ok(())
 }
 
-fn check_outputs(args: &CheckArgs, pictures: usize) -> Result<(), Failure> {
-    if args.heat_map.is_some() && pictures != 1 {
-        let message = format_args!(
-            "given with {pictures} pictures, expected one; --output has all heat maps"
-        )
-        .to_string();
-        return Err(Failure::option("--heat-map", message));
+fn check_outputs(args: &CheckArgs, inputs: &[PathBuf]) -> Result<(), Failure> {
+    if args.heat_map.is_some() && inputs.len() != 1 {
+        let pictures = inputs.len();
+        return Err(Failure::option(
+            "--heat-map",
+            format_args!(
+                "given with {pictures} pictures, expected one; --output has all heat maps"
+            ),
+        ));
     }
     for output in args.output.iter().chain(&args.heat_map) {
         files::check_output(output)?;
-        for input in &args.inputs {
-            files::check_distinct(input, output)?;
+        if let Some(input) = inputs.iter().find(|input| files::is_same(input, output)) {
+            let input = input.display();
+            let message = format_args!("the picture {input} itself, expected another file");
+            return Err(Failure::file(output, message));
+        }
+        if let Some(cube) = &args.cube {
+            files::check_distinct(cube, output)?;
         }
     }
     Ok(())
@@ -231,6 +247,8 @@ impl PictureReport {
             flaws: report.located.iter().map(FlawReport::new).collect(),
             worst: report.worst.iter().map(WorstReport::new).collect(),
             cube,
+            heat_map: None,
+            page: None,
         }
     }
 }
@@ -265,6 +283,11 @@ impl WorstReport {
     }
 }
 
+/// Red, green and blue to four decimals: halves have no more.
+fn rgb_text([r, g, b]: [f32; 3]) -> String {
+    format!("{r:.4}, {g:.4}, {b:.4}")
+}
+
 impl Report for PictureReport {
     fn text(&self) -> String {
         let percent = |share: f64| format!("{:.2} %", 100.0 * share);
@@ -278,19 +301,32 @@ impl Report for PictureReport {
         if self.no_color > 0 {
             lines.add("no colors", format_args!("{} texels", self.no_color));
         }
+        let flaws = [
+            ("above 1", self.above_one),
+            ("negative", self.negative),
+            ("not a number", self.not_a_number),
+            ("infinite", self.infinite),
+        ];
+        for (name, count) in flaws.into_iter().filter(|(_, count)| *count > 0) {
+            lines.add(name, format_args!("{count} texels"));
+        }
         for (i, flaw) in self.flaws.iter().enumerate() {
-            let name = if i == 0 { "out of range" } else { "" };
-            let [r, g, b] = flaw.rgb;
+            let name = if i == 0 { "at" } else { "" };
+            let rgb = rgb_text(flaw.rgb);
             let FlawReport { flaw, x, y, .. } = flaw;
-            lines.add(name, format_args!("{x},{y} ({r}, {g}, {b}): {flaw}"));
+            lines.add(name, format_args!("{x},{y} ({rgb}): {flaw}"));
         }
         for (i, worst) in self.worst.iter().enumerate() {
             let name = if i == 0 { "worst" } else { "" };
-            let WorstReport { x, y, rgb: [r, g, b], needs, .. } = worst;
+            let WorstReport { x, y, needs, .. } = worst;
+            let rgb = rgb_text(worst.rgb);
             let (passive, any) = (worst.reflectance_de2000, worst.material_de2000);
             lines.add(
                 name,
-                format_args!("{x},{y} ({r}, {g}, {b}): {needs}; ΔE00 {passive:.1} to a reflectance, {any:.1} to any material"),
+                format_args!(
+                    "{x},{y} ({rgb}): {needs}; ΔE00 {passive:.1} to the nearest reflectance, \
+                     {any:.1} to the nearest of all materials"
+                ),
             );
         }
         if let Some(cube) = &self.cube {
@@ -303,6 +339,11 @@ impl Report for PictureReport {
                     percent(cube.within_two)
                 ),
             );
+        }
+        for (name, path) in [("heat map", &self.heat_map), ("page", &self.page)] {
+            if let Some(path) = path {
+                lines.add(name, path);
+            }
         }
         lines.to_string()
     }

@@ -1,15 +1,20 @@
 //! `upglow lint`: whether files are well-formed spectral EXR.
 
+use std::path::Path;
+
 use serde::Serialize;
-use upglow_image::{Depth, Lint, Severity, lint};
+use upglow_image::{Depth, ExrReader, Lint, Severity, baked_form, lint};
 
 use crate::args::LintArgs;
 use crate::failure::Failure;
 use crate::output::{Format, Lines, Report};
+use crate::pictures;
 
 #[derive(Clone, Debug, Serialize)]
 struct LintReport {
     file: String,
+    /// What `upglow bake` made it as, if it did.
+    baked_as: Option<String>,
     well_formed: bool,
     reflectance_channels: usize,
     radiance_channels: usize,
@@ -29,9 +34,11 @@ struct FindingReport {
 pub(crate) fn run(args: &LintArgs, format: Format) -> Result<(), Failure> {
     let depth = if args.names_only { Depth::Header } else { Depth::Pixels };
     let mut broken = Vec::new();
-    for path in &args.files {
+    for (number, path) in args.files.iter().enumerate() {
+        pictures::check_there(path, "an OpenEXR file")?;
         let found = lint(path, depth).map_err(|error| Failure::file(path, error))?;
-        format.print(&LintReport::new(path.display().to_string(), &found))?;
+        format.separate(number)?;
+        format.print(&LintReport::new(path, &found))?;
         if !found.is_well_formed() {
             broken.push(path);
         }
@@ -50,7 +57,8 @@ pub(crate) fn run(args: &LintArgs, format: Format) -> Result<(), Failure> {
 }
 
 impl LintReport {
-    fn new(file: String, lint: &Lint) -> Self {
+    fn new(path: &Path, lint: &Lint) -> Self {
+        let reader = ExrReader::open(path).ok();
         let findings = lint.findings.iter().map(|finding| FindingReport {
             severity: match finding.severity {
                 Severity::Warning => "warning",
@@ -60,7 +68,8 @@ impl LintReport {
             expected: finding.expected.clone(),
         });
         Self {
-            file,
+            file: path.display().to_string(),
+            baked_as: reader.and_then(|r| baked_form(r.attributes()).map(str::to_owned)),
             well_formed: lint.is_well_formed(),
             reflectance_channels: lint.reflectance,
             radiance_channels: lint.radiance,
@@ -87,7 +96,14 @@ impl Report for LintReport {
         }
         let kinds = if kinds.is_empty() { "none".to_owned() } else { kinds.join(", ") };
         let mut lines = Lines::default();
-        lines.add("file", &self.file).add("channels", kinds);
+        lines.add("file", &self.file);
+        match self.baked_as.as_deref() {
+            Some("spectral") | None => {}
+            Some(form) => {
+                lines.add("baked as", format_args!("{form}, which is no spectral picture"));
+            }
+        }
+        lines.add("channels", kinds);
         for FindingReport { severity, found, expected } in &self.findings {
             lines.add(severity, format_args!("{found}, expected {expected}"));
         }

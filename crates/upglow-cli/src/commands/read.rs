@@ -2,11 +2,14 @@
 
 use serde::Serialize;
 use upglow::{Fluorescence, Material, Model};
-use upglow_image::{ExrReader, MaterialPicture, SpectralPicture, SpectralTexel};
+use upglow_image::{
+    ExrReader, MaterialPicture, SpectralPicture, SpectralPictureError, SpectralTexel, baked_form,
+};
 
 use crate::args::ReadArgs;
 use crate::failure::Failure;
 use crate::output::{Format, Lines, Report, Side, Table, unsigned_zero};
+use crate::pictures;
 
 #[derive(Clone, Debug, Serialize)]
 struct ReadReport {
@@ -45,6 +48,7 @@ struct MaterialReport {
 
 pub(crate) fn run(args: &ReadArgs, format: Format) -> Result<(), Failure> {
     let faulty = |error: &dyn std::fmt::Display| Failure::file(&args.file, error);
+    pictures::check_there(&args.file, "a spectral or material EXR")?;
     let reader = ExrReader::open(&args.file).map_err(|error| faulty(&error))?;
     check_place(args.at, reader.size())?;
     let [x, y] = args.at;
@@ -54,7 +58,13 @@ pub(crate) fn run(args: &ReadArgs, format: Format) -> Result<(), Failure> {
         let material = picture.at(x, y).map_err(|error| faulty(&error))?;
         return format.print(&MaterialReport::new(file, args.at, material, picture.model()));
     }
-    let mut picture = SpectralPicture::open(&args.file).map_err(|error| faulty(&error))?;
+    let open = SpectralPicture::open(&args.file);
+    let mut picture = open.map_err(|error| match (&error, baked_form(reader.attributes())) {
+        (SpectralPictureError::NotSpectral, Some("radiance")) => {
+            faulty(&"colors under a light, expected a file baked as material or spectral")
+        }
+        _ => faulty(&error),
+    })?;
     let unit = picture.bispectral_unit().map(upglow_image::BispectralUnit::name);
     let texel = picture.at(x, y).map_err(|error| faulty(&error))?;
     format.print(&ReadReport::new(file, args.at, unit, texel))
@@ -160,7 +170,7 @@ impl Report for ReadReport {
         let mut lines = Lines::default();
         lines.add("texel", format_args!("{},{} of {}", self.x, self.y, self.file));
         if let Some([r, g, b]) = self.preview {
-            lines.add("preview", format_args!("{r}, {g}, {b}"));
+            lines.add("preview", format_args!("{r:.4}, {g:.4}, {b:.4}"));
         }
         let mut table = Table::new([
             ("nm", Side::Right),

@@ -9,7 +9,7 @@ use super::spectral::PREVIEW;
 use super::{BakeError, Maker, attributes};
 use crate::{
     Attribute, Attributes, CompactForm, CompactLayout, Compression, LAYOUT_VERSION,
-    LAYOUT_VERSION_VALUE, MOST_EXTRA_CHANNELS,
+    LAYOUT_VERSION_VALUE, MOST_EXTRA_CHANNELS, Sample,
 };
 
 /// The channels of [`CompactLayout`] beside a preview.
@@ -75,6 +75,14 @@ impl Maker for CompactMaker<'_> {
 
     fn compression(&self) -> Compression {
         Compression::Zips
+    }
+
+    /// Half precision would move positions on the ring of dyes.
+    fn sample(&self, asked: Sample) -> Sample {
+        match self.layout.form() {
+            CompactForm::PerDye => asked,
+            CompactForm::PerLobe => Sample::Float,
+        }
     }
 
     fn fill(&self, rgb: &[[f32; 3]], planes: &mut [&mut [f32]]) {

@@ -5,7 +5,7 @@ use upglow::{Cube, Model, Node};
 use upglow_fit::{FitOptionsError, Polisher};
 
 use super::{Maker, MaterialWay, attributes};
-use crate::{Attribute, Attributes, Compression};
+use crate::{Attribute, Attributes, Compression, Sample};
 
 /// Three numbers of the reflectance and, where the model fluoresces, three of that.
 #[derive(Debug)]
@@ -13,6 +13,7 @@ pub(super) struct MaterialMaker<'c> {
     cube: &'c Cube,
     polisher: Polisher<'c>,
     way: MaterialWay,
+    sample: Sample,
 }
 
 /// Wavelengths are stored from here on: half precision keeps an eighth of a nanometer within 256 nm
@@ -41,8 +42,12 @@ impl<'c> MaterialMaker<'c> {
     /// # Errors
     ///
     /// [`FitOptionsError`] if the cube records a slope limit that no fit can keep.
-    pub(super) fn new(cube: &'c Cube, way: MaterialWay) -> Result<Self, FitOptionsError> {
-        Ok(Self { cube, polisher: Polisher::new(cube)?, way })
+    pub(super) fn new(
+        cube: &'c Cube,
+        way: MaterialWay,
+        sample: Sample,
+    ) -> Result<Self, FitOptionsError> {
+        Ok(Self { cube, polisher: Polisher::new(cube)?, way, sample })
     }
 }
 
@@ -81,7 +86,7 @@ impl Maker for MaterialMaker<'_> {
         made.expect("as many materials as texels");
         let dyes = matches!(self.cube.model(), Model::Dyes(_));
         for (texel, node) in nodes.iter().enumerate() {
-            for (plane, value) in planes.iter_mut().zip(stored(node, dyes)) {
+            for (plane, value) in planes.iter_mut().zip(stored(node, dyes, self.sample)) {
                 plane[texel] = value;
             }
         }
@@ -89,12 +94,15 @@ impl Maker for MaterialMaker<'_> {
 }
 
 /// A node's numbers in the order of the channels.
-fn stored(node: &Node, dyes: bool) -> [f32; 6] {
+fn stored(node: &Node, dyes: bool, sample: Sample) -> [f32; 6] {
     let [edge_nm, level, slope_per_nm] = node.reflectance;
     let [first, second, third] = node.fluorescence;
     // What is infinite in half precision is white or black long before.
     let level = level.clamp(-f16::MAX.to_f32(), f16::MAX.to_f32());
-    let slope_per_nm = towards_zero(slope_per_nm);
+    let slope_per_nm = match sample {
+        Sample::Half => towards_zero(slope_per_nm),
+        _ => slope_per_nm,
+    };
     let fluorescence = match (dyes, first + second + third > 0.0) {
         (_, false) => [0.0; 3],
         (true, true) => [f32::from(node.dye), first, second],
@@ -105,7 +113,7 @@ fn stored(node: &Node, dyes: bool) -> [f32; 6] {
 }
 
 /// The nearest half-precision number that is not greater in size: rounding may not lift a slope
-/// above its limit. Files in single precision hold the same number.
+/// above its limit.
 fn towards_zero(value: f32) -> f32 {
     let nearest = f16::from_f32(value);
     let size = nearest.to_f32().abs();

@@ -1,9 +1,12 @@
 """Reads files that upglow-image wrote with other programs, and compares every sample.
 
 usage: check_exr.py FULL.exr COMPACT.exr EXPECTED.txt
+       check_exr.py --samples FILE.exr EXPECTED.txt
+       check_exr.py --colors SPECTRAL.exr WEIGHTS.txt COLORS.txt
 
 EXPECTED.txt holds one sample a line: column, row, channel, value. The full file must hold them as
 channels; the compact one is expanded here, by the description in docs/spectral-exr.md alone.
+WEIGHTS.txt holds a wavelength and the power of the light a line, COLORS.txt column, row, X, Y, Z.
 """
 
 import sys
@@ -65,9 +68,54 @@ def wavelength(text):
     return float(text.removesuffix("nm").replace(",", "."))
 
 
+def expected(path):
+    with open(path, encoding="utf-8") as file:
+        return [line.split() for line in file]
+
+
+def samples(path, expected_path):
+    """Every channel of a file, and no other, as expected."""
+    channels, _ = read(path)
+    rows = expected(expected_path)
+    assert sorted(channels) == sorted({name for _, _, name, _ in rows}), sorted(channels)
+    for x, y, name, value in rows:
+        found = channels[name][int(y), int(x)]
+        assert found == np.float32(value), (x, y, name, found, value)
+    print(f"OpenEXR {OpenEXR.__version__}: {len(rows)} samples")
+    with_open_image_io(path, channels)
+
+
+# Two sums of the same products in another order.
+COLOR_RELATIVE = 1e-4
+
+
+def colors(path, light_path, colors_path):
+    """Colors of a reflectance file, integrated by colour-science with its own observer."""
+    try:
+        import colour
+    except ImportError:
+        print("skipped: colour-science is not installed")
+        return
+    channels, _ = read(path)
+    bands = {wavelength(name[2:]): name for name in channels if name.startswith("T.")}
+    waves = np.array(sorted(bands))
+    light = np.array(expected(light_path), dtype=np.float64)
+    assert np.array_equal(light[:, 0], waves)
+    shape = colour.SpectralShape(waves[0], waves[-1], waves[1] - waves[0])
+    eye = colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"].copy().align(shape)
+    lamp = colour.SpectralDistribution(light[:, 1], waves)
+    for x, y, *xyz in expected(colors_path):
+        values = [channels[bands[wave]][int(y), int(x)] for wave in waves]
+        found = colour.sd_to_XYZ(
+            colour.SpectralDistribution(values, waves), eye, lamp, method="Integration"
+        )
+        ours = np.array(xyz, dtype=np.float64)
+        assert np.all(abs(found / 100 - ours) <= COLOR_RELATIVE * ours), (x, y, found, ours)
+    print(f"colour {colour.__version__}: colors of {len(waves)} bands")
+
+
 def main(full_path, compact_path, expected_path):
-    with open(expected_path, encoding="utf-8") as file:
-        rows = [line.split() for line in file]
+    rows = expected(expected_path)
     full, header = read(full_path)
     assert header["spectralLayoutVersion"] == "1.0", header
     nm, matrix = expand(*read(compact_path))
@@ -123,4 +171,8 @@ def with_colour(path, rows):
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    modes = {"--samples": samples, "--colors": colors}
+    if sys.argv[1] in modes:
+        modes[sys.argv[1]](*sys.argv[2:])
+    else:
+        main(*sys.argv[1:])

@@ -1,0 +1,368 @@
+//! Pictures from end to end: check, bake, lint, read, and tables of coefficients.
+#![expect(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
+
+mod support;
+
+use std::path::Path;
+
+use serde_json::Value;
+use support::{Folder, one_line};
+use upglow_color::RgbSpace;
+use upglow_image::{Attributes, ExrDescription, ExrWriter, Sample, chromaticities};
+
+/// A picture of float samples; `says` whether it is in ACEScg.
+fn picture(folder: &Folder, name: &str, width: usize, rgb: &[[f32; 3]], says: bool) {
+    let space = || ("chromaticities".to_owned(), chromaticities(&RgbSpace::default()));
+    let described = ExrDescription {
+        sample: Sample::Float,
+        attributes: says.then(space).into_iter().collect::<Attributes>(),
+        ..ExrDescription::new([width, rgb.len() / width], ["R", "G", "B"])
+    };
+    let path = folder.path().join(name);
+    std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+    let mut writer = ExrWriter::create(&path, described).unwrap();
+    let planes = [0, 1, 2].map(|k| rgb.iter().map(|v| v[k]).collect::<Vec<f32>>());
+    writer.write_band(&planes.each_ref().map(Vec::as_slice)).unwrap();
+    writer.finish().unwrap();
+}
+
+const MAGENTA: [f32; 3] = [0.9, 0.0, 0.9];
+const GRAY: [f32; 3] = [0.5; 3];
+const TILE: [[f32; 3]; 4] = [GRAY, MAGENTA, [0.1, 0.5, 0.6], [0.0, 1.0, 0.0]];
+
+/// A cube, and a picture of four texels.
+fn desk() -> Folder {
+    let folder = Folder::new();
+    folder.done("build --resolution 4 -o cube");
+    picture(&folder, "tile.exr", 2, &TILE, true);
+    folder
+}
+
+#[test]
+fn the_examples_are_those_of_the_repository() {
+    let folder = Folder::new();
+    let told = folder.json("examples --out made");
+    let committed = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
+    let pictures = told["pictures"].as_array().unwrap();
+    assert_eq!(pictures.len(), 3);
+    for made in pictures {
+        let file = made["file"].as_str().unwrap();
+        let name = Path::new(file).file_name().unwrap();
+        assert!(folder.read(file) == std::fs::read(committed.join(name)).unwrap(), "{file}");
+    }
+    assert!(folder.done("examples").starts_with("examples/pool.exr:   512 × 512, tiles"));
+}
+
+#[test]
+fn check_says_what_each_texel_needs() {
+    let folder = desk();
+    let found = folder.json("check tile.exr --cube cube -o page.html --heat-map heat.png");
+    assert_eq!(
+        (&found["width"], &found["texels"], &found["no_color"]),
+        (&2.into(), &4.into(), &0.into())
+    );
+    assert_eq!(found["shown_by_reflectance"], 0.5);
+    assert_eq!(found["needs_fluorescence"], 0.25);
+    assert_eq!(found["shown_by_nothing"], 0.25);
+    assert_eq!((&found["worst"][0]["x"], &found["worst"][0]["y"]), (&1.into(), &1.into()));
+    assert_eq!((&found["page"], &found["heat_map"]), (&"page.html".into(), &"heat.png".into()));
+    assert!(found["cube"]["greatest_de2000"].as_f64().unwrap() > 1.0);
+    let page = String::from_utf8(folder.read("page.html")).unwrap();
+    assert!(page.starts_with("<!DOCTYPE html>") && page.contains("tile.exr"));
+    assert!(page.contains("data:image/png;base64,") && !page.contains("src=\"http"));
+    assert!(folder.read("heat.png").starts_with(b"\x89PNG"));
+    let text = folder.done("check tile.exr");
+    assert!(text.contains("fluorescence needed:  25.00 %"), "{text}");
+    assert!(text.contains("1,1 (0.0000, 1.0000, 0.0000): nothing shows it"), "{text}");
+}
+
+#[test]
+fn check_counts_and_locates_what_is_out_of_range() {
+    let folder = Folder::new();
+    let flawed =
+        [[2.0, 0.5, 0.5], [0.5, -0.5, 0.5], [f32::NAN, 0.0, 0.0], [0.0, f32::INFINITY, 0.0]];
+    picture(&folder, "flawed.exr", 4, &flawed, true);
+    let found = folder.json("check flawed.exr");
+    for (x, (count, flaw)) in [
+        ("above_one", "above 1"),
+        ("negative", "negative"),
+        ("not_a_number", "no number"),
+        ("infinite", "infinite"),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        assert_eq!(found[count], 1, "{found}");
+        let located = found["flaws"].as_array().unwrap();
+        assert!(located.iter().any(|f| f["flaw"] == flaw && f["x"] == x && f["y"] == 0), "{found}");
+    }
+    let text = folder.done("check flawed.exr");
+    assert!(text.contains("not a number:") && text.contains("2,0 (NaN, 0.0000, 0.0000)"), "{text}");
+}
+
+#[test]
+fn a_material_is_baked_and_read_back() {
+    let folder = desk();
+    let told = folder.json("bake cube tile.exr -o tile.material.exr");
+    assert_eq!((&told["form"], &told["channels"]), (&"material".into(), &6.into()));
+    assert_eq!(told["bytes"], folder.read("tile.material.exr").len());
+    let gray = folder.json("read tile.material.exr --at 0,0");
+    assert_eq!((&gray["concentration"], &gray["dye"]), (&0.0.into(), &Value::Null));
+    let magenta = folder.json("read tile.material.exr --at 1,0");
+    assert!(magenta["concentration"].as_f64().unwrap() > 0.5, "{magenta}");
+    assert!(magenta["steepest_per_nm"].as_f64().unwrap() <= 0.01);
+    let text = folder.done("read tile.material.exr --at 1,0");
+    assert!(text.starts_with("texel:          1,0 of tile.material.exr\n"), "{text}");
+    folder.done("bake cube tile.exr -o fast.exr --fast --sample float");
+    let run = folder.run("lint tile.material.exr");
+    assert_eq!(run.status, 1);
+    assert!(run.stdout.contains("baked as:     material, which is no spectral"), "{}", run.stdout);
+    assert_eq!(
+        one_line(&run.stderr),
+        "tile.material.exr: broken, expected a well-formed spectral EXR"
+    );
+}
+
+#[test]
+fn spectral_files_are_well_formed_and_agree() {
+    let folder = desk();
+    folder.done("bake cube tile.exr -o full.exr --as spectral --bands 400:700:20 --sample float");
+    let compact = "--as spectral --bands 400:700:20 --sample float --compact";
+    let told = folder.json(&format!("bake cube tile.exr -o compact.exr {compact}"));
+    assert_eq!(told["channels"], 3 + 16 + 8);
+    for (file, pairs, compact) in [("full.exr", 120, false), ("compact.exr", 0, true)] {
+        let found = folder.json(&format!("lint {file}"));
+        assert_eq!((&found["well_formed"], &found["compact"]), (&true.into(), &compact.into()));
+        assert_eq!(
+            (&found["reflectance_channels"], &found["reradiation_channels"]),
+            (&16.into(), &pairs.into())
+        );
+    }
+    // A node of the cube: its blend is one material.
+    let read = |file: &str| folder.json(&format!("read {file} --at 1,1"));
+    let (full, compact) = (read("full.exr"), read("compact.exr"));
+    assert_eq!(full["reflectance"].as_array().unwrap().len(), 16);
+    assert_eq!(full["reradiation"].as_array().unwrap().len(), 120);
+    assert_eq!(compact["reradiation"].as_array().unwrap().len(), 120);
+    assert_eq!(full["reradiation_unit"], "per band");
+    let text = folder.done("read full.exr --at 1,0");
+    assert!(text.contains(" nm  reflectance") && text.contains("400  "), "{text}");
+    folder.done("lint full.exr compact.exr --names-only");
+}
+
+#[test]
+fn radiance_under_the_cubes_own_light_is_the_picture() {
+    let folder = desk();
+    let told = folder.json("bake cube tile.exr -o light.exr --as radiance --light D65");
+    assert_eq!(told["channels"], 3);
+    let line = folder.refused(1, "read light.exr --at 0,0");
+    assert_eq!(
+        line,
+        "light.exr: colors under a light, expected a file baked as material or spectral"
+    );
+    // It can be checked as any picture, and its gray is still there.
+    let found = folder.json("check light.exr");
+    assert_eq!(found["rgb_space"], "acescg");
+}
+
+#[test]
+fn folders_and_udim_tiles_keep_their_names() {
+    let folder = desk();
+    for name in ["set/wall.1001.exr", "set/wall.1002.exr", "set/floor_1001.exr", "set/door.exr"] {
+        picture(&folder, name, 1, &[GRAY], true);
+    }
+    folder.write("set/notes.txt", "no picture");
+    let text = folder.done("bake cube set -o out/of/it");
+    assert_eq!(text.matches("\n\npicture:").count(), 3, "{text}");
+    let mut names: Vec<String> = std::fs::read_dir(folder.path().join("out/of/it"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    assert_eq!(
+        names,
+        [
+            "door.material.exr",
+            "floor.material_1001.exr",
+            "wall.material.1001.exr",
+            "wall.material.1002.exr"
+        ]
+    );
+    let lines = folder.done("--json check set");
+    assert_eq!(lines.lines().count(), 4);
+    folder.done("check set -o page.html");
+    let line = folder.refused(1, "bake cube set -o set");
+    assert!(line.starts_with("set: the folder of the pictures, expected another"), "{line}");
+    let line = folder.refused(1, "bake cube set -o all.exr");
+    assert_eq!(line, "all.exr: one file for 4 pictures, expected a folder");
+    let line = folder.refused(2, "check set --heat-map heat.png");
+    assert!(line.starts_with("--heat-map: given with 4 pictures, expected one"), "{line}");
+}
+
+#[test]
+fn what_cannot_be_baked_is_repaired_only_if_asked() {
+    let folder = Folder::new();
+    folder.done("build --resolution 2 -o cube");
+    picture(&folder, "bright.exr", 2, &[GRAY, [4.0, 1.0, 1.0], GRAY, [-1.0, 0.5, 0.5]], true);
+    let line = folder.refused(1, "bake cube bright.exr -o out.exr");
+    assert_eq!(
+        line,
+        "bright.exr: texel 1,0: red is 4, expected 0 to 1, the range of the cube; so are 1 more in \
+         the same rows; give --repair clip, scale or nearest"
+    );
+    for (repair, count) in [("clip", 2), ("scale", 4), ("nearest", 2)] {
+        let told = folder.json(&format!("bake cube bright.exr -o out.exr --repair {repair}"));
+        assert_eq!(told["repaired"], count, "{repair}");
+    }
+}
+
+#[test]
+fn pictures_that_are_refused() {
+    let folder = desk();
+    picture(&folder, "unsaid.exr", 1, &[GRAY], false);
+    let whole = folder.read("tile.exr");
+    folder.write("cut.exr", &whole[..whole.len() - 9]);
+    folder.write("head.exr", &whole[..60]);
+    folder.write("text.exr", "no picture");
+    folder.write("empty.png", "");
+    let space = "unsaid.exr: the file does not name its RGB space, expected one to be given; give";
+    let cases = [
+        ("bake cube unsaid.exr -o out.exr", space),
+        ("check unsaid.exr", space),
+        ("bake cube cut.exr -o out.exr", "cut.exr: "),
+        ("check cut.exr", "cut.exr: "),
+        ("lint cut.exr", "cut.exr: "),
+        ("bake cube head.exr -o out.exr", "head.exr: the file ends inside "),
+        ("read head.exr --at 0,0", "head.exr: the file ends inside "),
+        ("lint head.exr", "head.exr: the file ends inside "),
+        ("bake cube text.exr -o out.exr", "text.exr: the file begins with [6e, 6f, 20, 70]"),
+        ("check empty.png", "empty.png: the file begins with []"),
+        ("read text.exr --at 0,0", "text.exr: the file begins with"),
+        ("bake cube cube -o out.exr", "cube: the file begins with"),
+        ("bake tile.exr tile.exr -o out.exr", "tile.exr: not a whole safetensors file"),
+        (
+            "bake cube absent.exr -o out.exr",
+            "absent.exr: no such file or folder, expected a picture",
+        ),
+        ("check absent.exr", "absent.exr: no such file or folder, expected a picture"),
+        ("read absent.exr --at 0,0", "absent.exr: no such file or folder, expected a spectral"),
+        ("lint absent.exr", "absent.exr: no such file or folder, expected an OpenEXR file"),
+        ("bake cube tile.exr -o ./tile.exr", "./tile.exr: the picture tile.exr itself, expected"),
+        ("check tile.exr -o tile.exr", "tile.exr: the picture tile.exr itself, expected"),
+        ("check tile.exr --cube cube -o cube", "cube: the cube itself, expected another file"),
+        ("bake cube tile.exr -o tile.png", "tile.png: no EXR, expected a file that ends in exr"),
+        ("read tile.exr --at 0,0", "tile.exr: no spectral channel, expected names as T.550"),
+    ];
+    for (words, line) in cases {
+        let found = folder.refused(1, words);
+        assert!(found.starts_with(line) && found.contains("expected"), "{words}: {found}");
+    }
+}
+
+#[test]
+fn options_that_do_not_fit() {
+    let folder = desk();
+    folder.done("build --resolution 2 --model reflectance -o passive");
+    folder.done("bake cube tile.exr -o material.exr");
+    let cases = [
+        (
+            "bake cube tile.exr -o x.exr --as paint",
+            "--as: unknown form \"paint\", expected material, spectral or radiance",
+        ),
+        ("bake cube tile.exr -o x.exr --sample byte", "--sample: unknown kind of number \"byte\""),
+        (
+            "bake cube tile.exr -o x.exr --repair wish",
+            "--repair: unknown repair \"wish\", expected clip",
+        ),
+        ("bake cube tile.exr -o x.exr --space rec709", "--space: unknown RGB space \"rec709\""),
+        (
+            "bake cube tile.exr -o x.exr --encoding log",
+            "--encoding: unknown encoding \"log\", expected",
+        ),
+        (
+            "bake cube tile.exr -o x.exr --bands 400:700:10",
+            "--bands: given with --as material, expected --as spectral",
+        ),
+        ("bake cube tile.exr -o x.exr --compact", "--compact: given with --as material"),
+        (
+            "bake cube tile.exr -o x.exr --light A",
+            "--light: given with --as material, expected --as radiance",
+        ),
+        (
+            "bake cube tile.exr -o x.exr --as spectral --fast",
+            "--fast: given with --as spectral, expected --as material",
+        ),
+        (
+            "bake cube tile.exr -o x.exr --as radiance",
+            "--light: not given, expected one with --as radiance",
+        ),
+        (
+            "bake cube tile.exr -o x.exr --as radiance --light F11",
+            "--light: unknown illuminant \"F11\"",
+        ),
+        (
+            "bake cube tile.exr -o x.exr --as spectral --bands 400-700",
+            "--bands: \"400-700\", expected FIRST:LAST:STEP",
+        ),
+        (
+            "bake cube tile.exr -o x.exr --as spectral --bands 200:700:10",
+            "--bands: 200:700:10, expected bands within 300 to 830 nm",
+        ),
+        ("bake cube tile.exr -o x.exr --as spectral --bands 400:705:10", "--bands: "),
+        (
+            "bake passive tile.exr -o x.exr --as spectral --compact",
+            "--compact: a cube with the model reflectance, expected dyes",
+        ),
+        ("bake cube -o x.exr", "the following required arguments were not provided: <IN>"),
+        ("bake cube tile.exr", "the following required arguments were not provided: --output"),
+        (
+            "check tile.exr --cube cube --illuminant A",
+            "the argument '--cube <FILE>' cannot be used",
+        ),
+        ("read material.exr", "the following required arguments were not provided: --at"),
+        ("read material.exr --at 1", "--at: \"1\", expected two whole numbers X,Y"),
+        ("read material.exr --at -1,0", "--at: \"-1\", expected two whole numbers X,Y"),
+        ("read material.exr --at 2,0", "--at: 2,0 is outside the picture, expected 0,0 to 1,1"),
+        ("lint", "the following required arguments were not provided: <FILE>"),
+        ("export cube x.txt", "--format: not given, expected csv or coeff"),
+        (
+            "export cube x.coeff --resolution 500",
+            "--resolution: 500, expected a whole number from 2",
+        ),
+        ("export cube x.csv --resolution 8", "--resolution: given with --format csv, expected"),
+    ];
+    for (words, line) in cases {
+        let found = folder.refused(2, words);
+        assert!(found.starts_with(line), "{words}: {found}");
+    }
+}
+
+#[test]
+fn a_table_of_coefficients_comes_back_with_or_without_its_trailer() {
+    let folder = Folder::new();
+    folder.done("build --resolution 2 --model reflectance --space srgb -o cube");
+    let told = folder.json("export cube table.coeff --resolution 8");
+    let table = folder.read("table.coeff");
+    assert_eq!((&told["nodes"], &told["bytes"]), (&(3 * 512).into(), &table.len().into()));
+    let whole = folder.json("inspect table.coeff --space srgb");
+    assert_eq!((&whole["resolution"], &whole["integrator"]), (&8.into(), &true.into()));
+    // 4660 bytes that readers before 2026 ignore, and files before 2026 lack.
+    folder.write("old.coeff", &table[..table.len() - 4660]);
+    let old = folder.json("inspect old.coeff --space srgb");
+    assert_eq!(old["integrator"], false);
+    assert_eq!(old["mean_de2000"], whole["mean_de2000"]);
+    let other = folder.json("inspect table.coeff --space acescg --illuminant A");
+    assert!(other["mean_de2000"].as_f64() > whole["mean_de2000"].as_f64());
+    let line = folder.refused(2, "inspect table.coeff");
+    assert!(line.starts_with("--space: not given, expected the RGB space of the table"), "{line}");
+    for cut in [5, 40, 2000, table.len() - 4661, table.len() - 1] {
+        folder.write("cut.coeff", &table[..cut]);
+        let line = folder.refused(1, "inspect cut.coeff --space srgb");
+        assert!(line.starts_with("cut.coeff: ") && line.contains("expected"), "{cut}: {line}");
+    }
+    let mut altered = table.clone();
+    altered[600..604].copy_from_slice(&f32::NAN.to_le_bytes());
+    folder.write("altered.coeff", altered);
+    let line = folder.refused(1, "inspect altered.coeff --space srgb");
+    assert!(line.starts_with("altered.coeff: ") && line.contains("expected"), "{line}");
+}
