@@ -8,7 +8,7 @@ use std::process::{Command, ExitCode, Stdio};
 use std::time::Instant;
 
 use crate::python::{self, Python};
-use crate::{layers, readme, tables};
+use crate::{c_library, layers, python_wheel, readme, tables};
 
 /// Set for the tests under `--slow`, so that they may take larger samples.
 const SLOW_VARIABLE: &str = "UPGLOW_SLOW";
@@ -27,14 +27,14 @@ pub(crate) enum Tests {
 
 /// How a step ended that did not fail.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Outcome {
+pub(crate) enum Outcome {
     Passed,
     Skipped(&'static str),
 }
 
 /// Why a step failed.
 #[derive(Debug)]
-enum StepError {
+pub(crate) enum StepError {
     /// A command could not be started.
     Start { command: String, source: io::Error },
     /// A command failed.
@@ -77,7 +77,7 @@ impl std::error::Error for StepError {
     }
 }
 
-type Step = fn(&Path) -> Result<Outcome, StepError>;
+pub(crate) type Step = fn(&Path) -> Result<Outcome, StepError>;
 
 const STEPS: [(&str, Step); 9] = [
     ("format", format),
@@ -96,8 +96,17 @@ const SLOW_STEP: (&str, Step) = ("slow tests", slow_tests);
 /// Runs the steps up to the first failure; prints a line for each and a summary.
 pub(crate) fn run(root: &Path, tests: Tests) -> ExitCode {
     let slow = (tests == Tests::QuickAndSlow).then_some(SLOW_STEP);
+    let bindings = c_library::STEPS.into_iter().chain(python_wheel::STEPS);
+    run_steps(root, STEPS.into_iter().chain(bindings).chain(slow))
+}
+
+/// Runs some steps up to the first failure; prints a line for each and a summary.
+pub(crate) fn run_steps(
+    root: &Path,
+    steps: impl IntoIterator<Item = (&'static str, Step)>,
+) -> ExitCode {
     let mut outcomes = Vec::new();
-    for (name, step) in STEPS.into_iter().chain(slow) {
+    for (name, step) in steps {
         let start = Instant::now();
         let result = step(root);
         let time_s = start.elapsed().as_secs_f64();
@@ -225,13 +234,17 @@ fn run_examples(examples: &[readme::Example], bin_dir: &Path) -> Result<Outcome,
 }
 
 /// Builds the program as a user would; the folder it lies in.
-fn release_bin_dir(root: &Path) -> Result<PathBuf, StepError> {
+pub(crate) fn release_bin_dir(root: &Path) -> Result<PathBuf, StepError> {
     let mut build = cargo(root, "build --release");
     build.args(["--package", PROGRAM_PACKAGE]);
     finish(build)?;
+    Ok(target_dir(root)?.join("release"))
+}
+
+/// Where cargo puts what it builds.
+pub(crate) fn target_dir(root: &Path) -> Result<PathBuf, StepError> {
     let metadata = metadata(root)?;
-    let target = metadata["target_directory"].as_str().unwrap_or("target");
-    Ok(root.join(target).join("release"))
+    Ok(root.join(metadata["target_directory"].as_str().unwrap_or("target")))
 }
 
 fn licenses(root: &Path) -> Result<Outcome, StepError> {
@@ -251,7 +264,7 @@ fn metadata(root: &Path) -> Result<serde_json::Value, StepError> {
 }
 
 /// Cargo with arguments separated by spaces, in the workspace root.
-fn cargo(root: &Path, args: &str) -> Command {
+pub(crate) fn cargo(root: &Path, args: &str) -> Command {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     command.args(args.split(' ')).current_dir(root).stdin(Stdio::null());
     command
@@ -275,22 +288,28 @@ fn finish_aloud(mut command: Command) -> Result<Outcome, StepError> {
 }
 
 /// The standard output of a command that succeeds.
-fn output_of(mut command: Command) -> Result<String, StepError> {
+pub(crate) fn output_of(command: Command) -> Result<String, StepError> {
+    output_and_messages_of(command).map(|(output, _)| output)
+}
+
+/// The standard output and the standard error of a command that succeeds.
+pub(crate) fn output_and_messages_of(mut command: Command) -> Result<(String, String), StepError> {
     let shown = shown(&command);
     let output =
         command.output().map_err(|source| StepError::Start { command: shown.clone(), source })?;
-    let stdout = String::from_utf8_lossy(&output.stdout).into_owned();
+    let [stdout, stderr] =
+        [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
     if output.status.success() {
-        return Ok(stdout);
+        return Ok((stdout, stderr));
     }
-    let output = stdout + &String::from_utf8_lossy(&output.stderr);
-    Err(StepError::Failed { command: shown, output })
+    Err(StepError::Failed { command: shown, output: stdout + &stderr })
 }
 
 /// The command as one would type it.
 fn shown(command: &Command) -> String {
-    let args = command.get_args().map(|arg| arg.to_string_lossy().into_owned());
-    std::iter::once("cargo".to_owned()).chain(args).collect::<Vec<_>>().join(" ")
+    let program = Path::new(command.get_program()).file_stem().unwrap_or_default();
+    let words = std::iter::once(program).chain(command.get_args());
+    words.map(|word| word.to_string_lossy()).collect::<Vec<_>>().join(" ")
 }
 
 /// A new folder that is removed with its contents at the end.

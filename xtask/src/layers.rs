@@ -5,13 +5,18 @@ use serde_json::Value;
 /// Each crate of the workspace, and the crates of the workspace that it may depend on.
 ///
 /// Development dependencies count as well: a test that needs an upper layer belongs there.
-const ALLOWED: [(&str, &[&str]); 7] = [
+const ALLOWED: [(&str, &[&str]); 9] = [
     ("upglow-color", &[]),
     ("upglow", &["upglow-color"]),
     ("upglow-fit", &["upglow", "upglow-color"]),
     ("upglow-image", &["upglow-fit", "upglow", "upglow-color"]),
     ("upglow-study", &["upglow-fit", "upglow", "upglow-color"]),
-    ("upglow-cli", &["upglow-study", "upglow-image", "upglow-fit", "upglow", "upglow-color"]),
+    (
+        "upglow-cli",
+        &["upglow-study", "upglow-image", "upglow-fit", "upglow-shader", "upglow", "upglow-color"],
+    ),
+    ("upglow-python", &["upglow-fit", "upglow", "upglow-color"]),
+    ("upglow-c", &["upglow", "upglow-color"]),
     ("xtask", &[]),
 ];
 

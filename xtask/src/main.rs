@@ -1,4 +1,4 @@
-//! The project's own commands: `cargo xtask tables`, `cargo xtask check` and `cargo xtask bench`.
+//! The project's own commands; run `cargo xtask` for the list.
 //!
 //! `tables` turns `tables/*.csv` into committed Rust; `check` is the gate, the same on every
 //! machine and in `.ci/run`.
@@ -7,16 +7,23 @@ use std::path::Path;
 use std::process::ExitCode;
 
 mod bench;
+mod c_library;
 mod check;
 mod layers;
 mod python;
+mod python_wheel;
 mod readme;
 mod tables;
 
 const USAGE: &str = "\
 usage: cargo xtask tables          write crates/upglow-color/src/tables from tables/*.csv
        cargo xtask check [--slow]  run every check; --slow adds the tests named slow_*
-       cargo xtask bench           run every bench and write docs/PERFORMANCE.md";
+       cargo xtask bench           run every bench and write docs/PERFORMANCE.md
+       cargo xtask header          write bindings/c/include/upglow.h from bindings/c/src
+       cargo xtask install-c DIR   install the C library, its header, and files for pkg-config
+                                   and CMake below DIR
+       cargo xtask test-c          run the checks of the C library
+       cargo xtask test-python     build the Python package's wheel and run its tests";
 
 /// Exit status on bad usage; 1 is a check that failed.
 const BAD_USAGE: u8 = 2;
@@ -27,6 +34,10 @@ fn main() -> ExitCode {
     match args.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["tables"] => tables(root),
         ["bench"] => bench::run(root),
+        ["header"] => header(root),
+        ["install-c", prefix] => install_c(root, Path::new(prefix)),
+        ["test-c"] => check::run_steps(root, c_library::STEPS),
+        ["test-python"] => check::run_steps(root, python_wheel::STEPS),
         ["check"] => check::run(root, check::Tests::Quick),
         ["check", "--slow"] => check::run(root, check::Tests::QuickAndSlow),
         _ => {
@@ -44,6 +55,26 @@ fn tables(root: &Path) -> ExitCode {
     match tables::write(root, &files) {
         Ok(changed) => {
             println!("tables: {} files, {changed} changed", files.len());
+            ExitCode::SUCCESS
+        }
+        Err(error) => fail(&error),
+    }
+}
+
+fn header(root: &Path) -> ExitCode {
+    match c_library::write_header(root) {
+        Ok(changed) => {
+            println!("header: {}", if changed { "changed" } else { "unchanged" });
+            ExitCode::SUCCESS
+        }
+        Err(error) => fail(&error),
+    }
+}
+
+fn install_c(root: &Path, prefix: &Path) -> ExitCode {
+    match c_library::install(root, prefix) {
+        Ok(installed) => {
+            println!("install-c: {}, {}", installed.include.display(), installed.lib.display());
             ExitCode::SUCCESS
         }
         Err(error) => fail(&error),

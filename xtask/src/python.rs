@@ -9,7 +9,10 @@ use std::process::{Command, Stdio};
 pub(crate) const VARIABLE: &str = "UPGLOW_PYTHON";
 
 /// The lists of packages that tests need, with pinned versions.
-const REQUIREMENTS: [&str; 1] = ["crates/upglow-image/tests/readers/requirements.txt"];
+const REQUIREMENTS: [&str; 2] = [
+    "bindings/python/requirements-test.txt",
+    "crates/upglow-image/tests/readers/requirements.txt",
+];
 
 /// Whether tests have their Python.
 #[derive(Clone, Debug, PartialEq)]

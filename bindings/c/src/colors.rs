@@ -1,0 +1,139 @@
+//! Colors of whole images.
+
+use std::ffi::{CStr, c_char};
+
+use upglow::ColorTable;
+use upglow_color::{Contract, Grid, Illuminant};
+
+use crate::cube::UpglowCube;
+use crate::failure::{Failure, UpglowStatus, guarded};
+use crate::pointer::{Output, borrowed, slice, slice_mut, text};
+
+/// The colors that the materials of a cube have under one light. It never changes: any number of
+/// threads may use it at once. It does not need its cube any more.
+#[derive(Debug)]
+pub struct UpglowColors {
+    table: ColorTable,
+}
+
+/// Threads share colors.
+const fn shared_by_threads<T: Send + Sync>() {}
+const _: () = shared_by_threads::<UpglowColors>();
+
+/// Computes the colors of a cube's materials under a light: "D65", "D60", "D55", "D50", "A" or "E",
+/// or under the cube's own if `illuminant` is null.
+///
+/// `*colors` receives colors that the caller owns and gives back to `upglow_colors_destroy`. All
+/// memory that `upglow_xyz` needs is allocated here: 16 bytes for each node of the cube.
+///
+/// Fails with `UPGLOW_STATUS_INVALID_ARGUMENT` if there is no such light.
+///
+/// # Safety
+///
+/// Pointers are null or point to a cube, to text that ends with a zero byte and to room for a
+/// pointer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn upglow_colors_create(
+    cube: *const UpglowCube,
+    illuminant: *const c_char,
+    colors: *mut *mut UpglowColors,
+) -> UpglowStatus {
+    guarded(|| {
+        // SAFETY: the caller keeps this function's promise.
+        let (cube, output) = unsafe { (borrowed(cube, "cube")?, Output::new(colors, "colors")?) };
+        let mut contract = cube.cube.contract().clone();
+        if !illuminant.is_null() {
+            // SAFETY: the same.
+            contract.illuminant = named(unsafe { text(illuminant, "illuminant")? })?;
+        }
+        output.write(Box::into_raw(UpglowColors::new(cube, &contract)));
+        Ok(())
+    })
+}
+
+fn named(illuminant: &CStr) -> Result<Illuminant, Failure> {
+    let name = illuminant.to_str().map_err(|_| Failure::NotText { argument: "illuminant" })?;
+    Ok(Illuminant::named(name)?)
+}
+
+impl UpglowColors {
+    fn new(cube: &UpglowCube, contract: &Contract) -> Box<Self> {
+        Box::new(Self { table: cube.cube.color_table(&contract.on(Grid::FIT)) })
+    }
+}
+
+/// Frees colors; null is allowed and does nothing. No other thread may be using them.
+///
+/// # Safety
+///
+/// `colors` is null or came from `upglow_colors_create`, and was not destroyed before.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn upglow_colors_destroy(colors: *mut UpglowColors) {
+    guarded(|| {
+        if !colors.is_null() {
+            // SAFETY: it came from `Box::into_raw`, once, and the caller gives it back.
+            drop(unsafe { Box::from_raw(colors) });
+        }
+        Ok(())
+    });
+}
+
+/// CIE 1931 X, Y and Z of the materials of `count` colors, where Y of the perfect diffuser under
+/// the light is 1.
+///
+/// `rgb` and `xyz` are `[count][3]`: red, green, blue of each color in turn, linear, in the cube's
+/// space; X, Y, Z of each in turn. They must not overlap. A color outside the cube, or not a number,
+/// has no material: its X, Y and Z are not-a-number, the others are right, and `*outside`, unless
+/// `outside` is null, receives how many those are.
+///
+/// # Safety
+///
+/// Pointers are null or point to colors, to 3 times `count` values each and to room for a number.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn upglow_xyz(
+    colors: *const UpglowColors,
+    rgb: *const f32,
+    xyz: *mut f32,
+    count: usize,
+    outside: *mut usize,
+) -> UpglowStatus {
+    guarded(|| {
+        refuse_overlap(rgb, xyz, count)?;
+        let mut ignored = 0;
+        let outside = if outside.is_null() { &raw mut ignored } else { outside };
+        // SAFETY: the caller keeps this function's promise, and the arrays do not overlap.
+        let (rgb, xyz) = unsafe { (slice(rgb.cast::<[f32; 3]>(), count, "rgb")?, xyz.cast()) };
+        // SAFETY: the same.
+        let (colors, xyz, output) = unsafe {
+            let xyz = slice_mut(xyz, count, "xyz")?;
+            (borrowed(colors, "colors")?, xyz, Output::new(outside, "outside")?)
+        };
+        output.write(colors.table.xyz(rgb, xyz).expect("both arrays have `count` colors"));
+        Ok(())
+    })
+}
+
+/// Rust takes what it reads and what it writes to be apart.
+fn refuse_overlap(rgb: *const f32, xyz: *const f32, count: usize) -> Result<(), Failure> {
+    let bytes = count.saturating_mul(size_of::<[f32; 3]>());
+    if bytes > 0 && !rgb.is_null() && rgb.addr().abs_diff(xyz.addr()) < bytes {
+        return Err(Failure::Overlap);
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arrays_that_share_a_byte_overlap_and_neighbors_do_not() {
+        let at = std::ptr::without_provenance::<f32>;
+        assert!(refuse_overlap(at(1000), at(1024), 2).is_ok());
+        assert!(refuse_overlap(at(1024), at(1000), 2).is_ok());
+        assert!(refuse_overlap(at(1000), at(1000), 0).is_ok());
+        for overlapping in [1000, 1020, 980] {
+            assert!(refuse_overlap(at(1000), at(overlapping), 2).is_err());
+        }
+    }
+}

@@ -1,0 +1,202 @@
+//! Cubes: loaded once, shared by all threads.
+
+use std::ffi::{CStr, CString, OsStr, c_char};
+use std::path::Path;
+
+use upglow::{Cube, LookupTable};
+
+use crate::failure::{Failure, UpglowStatus, guarded};
+use crate::pointer::{Output, borrowed, slice, text};
+
+/// A cube of materials for all colors of an RGB space. It never changes: any number of threads may
+/// use it at once.
+#[derive(Debug)]
+pub struct UpglowCube {
+    pub(crate) cube: Cube,
+    pub(crate) table: LookupTable,
+    names: Names,
+}
+
+/// Texts of [`UpglowCubeFacts`].
+#[derive(Debug)]
+struct Names {
+    rgb_space: CString,
+    illuminant: CString,
+    observer: CString,
+    adaptation: CString,
+    model: CString,
+    header_json: CString,
+}
+
+/// What a cube says of itself. The texts are UTF-8 and the cube's own: they last as long as it
+/// does.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct UpglowCubeFacts {
+    /// Nodes along each axis, 2 to 256.
+    pub resolution: u32,
+    /// Whether any material of it fluoresces.
+    pub fluoresces: bool,
+    /// Name of the RGB space, whose components are linear.
+    pub rgb_space: *const c_char,
+    /// CIE 1931 x and y of the space's red, green and blue.
+    pub primaries: [[f64; 2]; 3],
+    /// CIE 1931 x and y of the space's white.
+    pub white: [f64; 2],
+    /// Name of the light that RGB is seen under, as in "D65".
+    pub illuminant: *const c_char,
+    /// Name of the observer that sees it.
+    pub observer: *const c_char,
+    /// How the space's white becomes the light's: "bradford", or "none".
+    pub adaptation: *const c_char,
+    /// What fluoresces: "dyes", "analytic", or "reflectance" for nothing.
+    pub model: *const c_char,
+    /// All that the file's header says, in JSON.
+    pub header_json: *const c_char,
+}
+
+/// Threads share cubes.
+const fn shared_by_threads<T: Send + Sync>() {}
+const _: () = shared_by_threads::<UpglowCube>();
+
+impl UpglowCube {
+    fn new(cube: Cube) -> Box<Self> {
+        Box::new(Self { table: cube.lookup_table(), names: Names::of(&cube), cube })
+    }
+
+    fn facts(&self) -> UpglowCubeFacts {
+        let space = &self.cube.contract().space;
+        let Names { rgb_space, illuminant, observer, adaptation, model, header_json } = &self.names;
+        UpglowCubeFacts {
+            resolution: u32::try_from(self.cube.resolution()).expect("at most 256"),
+            fluoresces: (0..self.cube.nodes().len())
+                .any(|node| self.cube.node_material(node).fluorescence.concentration() > 0.0),
+            rgb_space: rgb_space.as_ptr(),
+            primaries: space.primaries(),
+            white: space.white(),
+            illuminant: illuminant.as_ptr(),
+            observer: observer.as_ptr(),
+            adaptation: adaptation.as_ptr(),
+            model: model.as_ptr(),
+            header_json: header_json.as_ptr(),
+        }
+    }
+}
+
+impl Names {
+    fn of(cube: &Cube) -> Self {
+        let contract = cube.contract();
+        Self {
+            rgb_space: c_text(contract.space.name()),
+            illuminant: c_text(contract.illuminant.name()),
+            observer: c_text(contract.observer.name()),
+            adaptation: c_text(&contract.adaptation.to_string()),
+            model: c_text(cube.model().name()),
+            header_json: c_text(&cube.header_json()),
+        }
+    }
+}
+
+/// The text up to its first zero byte, which ends texts in C.
+fn c_text(text: &str) -> CString {
+    let visible = text.split('\0').next().unwrap_or_default();
+    CString::new(visible).expect("cut before the first zero byte")
+}
+
+/// Loads the cube in a file.
+///
+/// `path` is UTF-8, or on Unix any bytes, and ends with a zero byte. `*cube` receives a cube that
+/// the caller owns and gives back to `upglow_cube_destroy`. All memory that look-ups and
+/// evaluations need is allocated here.
+///
+/// Fails with `UPGLOW_STATUS_FILE` if the file cannot be read, and with `UPGLOW_STATUS_NOT_A_CUBE`
+/// if it is not whole, not a cube or of another version.
+///
+/// # Safety
+///
+/// Pointers are null or point to what is described above.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn upglow_cube_open(
+    path: *const c_char,
+    cube: *mut *mut UpglowCube,
+) -> UpglowStatus {
+    guarded(|| {
+        // SAFETY: the caller keeps this function's promise.
+        let (path, output) = unsafe { (text(path, "path")?, Output::new(cube, "cube")?) };
+        let cube = Cube::read(file_path(path)?).map_err(Failure::Cube)?;
+        output.write(Box::into_raw(UpglowCube::new(cube)));
+        Ok(())
+    })
+}
+
+#[cfg(unix)]
+fn file_path(path: &CStr) -> Result<&Path, Failure> {
+    use std::os::unix::ffi::OsStrExt;
+    Ok(Path::new(OsStr::from_bytes(path.to_bytes())))
+}
+
+#[cfg(not(unix))]
+fn file_path(path: &CStr) -> Result<&Path, Failure> {
+    let path = path.to_str().map_err(|_| Failure::NotText { argument: "path" })?;
+    Ok(Path::new(OsStr::new(path)))
+}
+
+/// Loads a cube from the content of its file: `length` bytes, which are copied and may be freed
+/// afterwards.
+///
+/// Otherwise like `upglow_cube_open`.
+///
+/// # Safety
+///
+/// Pointers are null or point to what is described above.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn upglow_cube_from_memory(
+    bytes: *const u8,
+    length: usize,
+    cube: *mut *mut UpglowCube,
+) -> UpglowStatus {
+    guarded(|| {
+        // SAFETY: the caller keeps this function's promise.
+        let (bytes, output) =
+            unsafe { (slice(bytes, length, "bytes")?, Output::new(cube, "cube")?) };
+        output.write(Box::into_raw(UpglowCube::new(Cube::from_bytes(bytes)?)));
+        Ok(())
+    })
+}
+
+/// Frees a cube; null is allowed and does nothing.
+///
+/// Materials that were looked up in it must not be used any more. No other thread may be using it.
+///
+/// # Safety
+///
+/// `cube` is null or came from `upglow_cube_open` or `upglow_cube_from_memory`, and was not
+/// destroyed before.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn upglow_cube_destroy(cube: *mut UpglowCube) {
+    guarded(|| {
+        if !cube.is_null() {
+            // SAFETY: it came from `Box::into_raw`, once, and the caller gives it back.
+            drop(unsafe { Box::from_raw(cube) });
+        }
+        Ok(())
+    });
+}
+
+/// What a cube says of itself. The texts last as long as the cube.
+///
+/// # Safety
+///
+/// Pointers are null or point to a cube and to room for the facts.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn upglow_cube_facts(
+    cube: *const UpglowCube,
+    facts: *mut UpglowCubeFacts,
+) -> UpglowStatus {
+    guarded(|| {
+        // SAFETY: the caller keeps this function's promise.
+        let (cube, output) = unsafe { (borrowed(cube, "cube")?, Output::new(facts, "facts")?) };
+        output.write(cube.facts());
+        Ok(())
+    })
+}

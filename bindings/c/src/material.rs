@@ -1,0 +1,218 @@
+//! Materials: a look-up in the caller's memory, and what it answers.
+
+use std::mem::MaybeUninit;
+
+use upglow::Blend;
+
+use crate::cube::UpglowCube;
+use crate::failure::{Failure, UpglowStatus, guarded};
+use crate::pointer::{Output, array, borrowed};
+
+/// The material of one color, in memory of the caller's own: on the stack, in an array, in another
+/// struct. Nothing is allocated for it and nothing is to be freed. It may be copied.
+///
+/// `upglow_look_up` fills it; its content is the library's business. It refers to its cube, which
+/// must outlive it. One that is all zeros is empty and refused. Threads may read it at once.
+#[repr(C, align(16))]
+#[derive(Clone, Copy, Debug)]
+pub struct UpglowMaterial {
+    /// More room than this version needs, so that a later one fits as well.
+    words: [MaybeUninit<u64>; 32],
+}
+
+/// What lies in an [`UpglowMaterial`] once it is filled.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+struct Filled<'c> {
+    mark: u64,
+    blend: Blend<'c>,
+}
+
+/// Says that a material is filled: neither zeros nor numbers that memory is likely to hold.
+const MARK: u64 = 0x7567_6c6f_775f_6d31;
+
+const _: () = assert!(size_of::<Filled<'_>>() <= size_of::<UpglowMaterial>());
+const _: () = assert!(align_of::<Filled<'_>>() <= align_of::<UpglowMaterial>());
+
+/// Threads share materials.
+const fn shared_by_threads<T: Send + Sync>() {}
+const _: () = shared_by_threads::<Filled<'_>>();
+
+/// # Safety
+///
+/// The pointer is null or points to a material that is zeros or filled, whose cube lives, and that
+/// is not written to for `'c`.
+#[inline(always)]
+pub(crate) unsafe fn looked_up<'c>(
+    material: *const UpglowMaterial,
+) -> Result<&'c Blend<'c>, Failure> {
+    // SAFETY: the caller promises that it is null or a material.
+    let material: *const UpglowMaterial = unsafe { borrowed(material, "material")? };
+    // SAFETY: a material has room for `Filled`, whose first word is zero or the mark.
+    if unsafe { material.cast::<u64>().read() } != MARK {
+        return Err(Failure::EmptyMaterial);
+    }
+    // SAFETY: only a look-up writes the mark, and it writes the rest with it.
+    Ok(unsafe { &(*material.cast::<Filled<'c>>()).blend })
+}
+
+/// Looks up the material of a color: 3 linear components in the cube's RGB space, 0 to 1.
+///
+/// It allocates nothing. The material refers to the cube.
+///
+/// Fails with `UPGLOW_STATUS_OUTSIDE` if a component is not a number in 0 to 1: whoever wants the
+/// nearest color of the cube clamps first.
+///
+/// cbindgen:ptrs-as-arrays=[[rgb; 3]]
+///
+/// # Safety
+///
+/// Pointers are null or point to a cube, to 3 values and to room for a material.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn upglow_look_up(
+    cube: *const UpglowCube,
+    rgb: *const f32,
+    material: *mut UpglowMaterial,
+) -> UpglowStatus {
+    guarded(|| {
+        // SAFETY: the caller keeps this function's promise.
+        let (cube, rgb) = unsafe { (borrowed(cube, "cube")?, array(rgb, "rgb")?) };
+        // SAFETY: the same; a material has room for `Filled`, and its alignment.
+        let output = unsafe { Output::new(material, "material")?.narrowed::<Filled<'_>>() };
+        output.write(Filled { mark: MARK, blend: cube.table.blend(rgb)? });
+        Ok(())
+    })
+}
+
+/// Whether any light comes back at another wavelength.
+///
+/// # Safety
+///
+/// Pointers are null or point to a material that was looked up and to room for the answer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn upglow_is_fluorescent(
+    material: *const UpglowMaterial,
+    is_fluorescent: *mut bool,
+) -> UpglowStatus {
+    guarded(|| {
+        // SAFETY: the caller keeps this function's promise.
+        let (material, output) =
+            unsafe { (looked_up(material)?, Output::new(is_fluorescent, "is_fluorescent")?) };
+        output.write(material.is_fluorescent());
+        Ok(())
+    })
+}
+
+/// Share of incident light at `lambda_nm` that is reflected at the same wavelength, 0 to 1; divided by
+/// pi it is the elastic BRDF.
+///
+/// Any wavelength is allowed; beyond 0 to 10000 nm the answer is that of the nearer end.
+///
+/// # Safety
+///
+/// Pointers are null or point to a material that was looked up and to room for the answer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn upglow_reflectance(
+    material: *const UpglowMaterial,
+    lambda_nm: f32,
+    reflectance: *mut f32,
+) -> UpglowStatus {
+    guarded(|| {
+        // SAFETY: the caller keeps this function's promise.
+        let (material, output) =
+            unsafe { (looked_up(material)?, Output::new(reflectance, "reflectance")?) };
+        output.write(material.reflectance(lambda_nm));
+        Ok(())
+    })
+}
+
+/// `upglow_reflectance` at 4 wavelengths (nm), faster than one by one. Both arrays may be the same.
+///
+/// cbindgen:ptrs-as-arrays=[[lambda_nm; 4], [reflectance; 4]]
+///
+/// # Safety
+///
+/// Pointers are null or point to a material that was looked up and to 4 values each.
+#[expect(clippy::doc_markdown, reason = "cbindgen reads its line as it is")]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn upglow_reflectance_4(
+    material: *const UpglowMaterial,
+    lambda_nm: *const f32,
+    reflectance: *mut f32,
+) -> UpglowStatus {
+    guarded(|| {
+        // SAFETY: the caller keeps this function's promise.
+        let (material, lambda_nm) =
+            unsafe { (looked_up(material)?, array(lambda_nm, "lambda_nm")?) };
+        // SAFETY: the same.
+        let output = unsafe { Output::new(reflectance.cast::<[f32; 4]>(), "reflectance")? };
+        output.write(material.reflectance4(lambda_nm));
+        Ok(())
+    })
+}
+
+/// `upglow_reflectance` at 8 wavelengths (nm), faster than one by one. Both arrays may be the same.
+///
+/// cbindgen:ptrs-as-arrays=[[lambda_nm; 8], [reflectance; 8]]
+///
+/// # Safety
+///
+/// Pointers are null or point to a material that was looked up and to 8 values each.
+#[expect(clippy::doc_markdown, reason = "cbindgen reads its line as it is")]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn upglow_reflectance_8(
+    material: *const UpglowMaterial,
+    lambda_nm: *const f32,
+    reflectance: *mut f32,
+) -> UpglowStatus {
+    guarded(|| {
+        // SAFETY: the caller keeps this function's promise.
+        let (material, lambda_nm) =
+            unsafe { (looked_up(material)?, array(lambda_nm, "lambda_nm")?) };
+        // SAFETY: the same.
+        let output = unsafe { Output::new(reflectance.cast::<[f32; 8]>(), "reflectance")? };
+        output.write(material.reflectance8(lambda_nm));
+        Ok(())
+    })
+}
+
+/// Energy that comes out per nm at `out_nm` by fluorescence, per unit that came in at `in_nm`; in
+/// 1/nm, 0 or more. What is reflected at the same wavelength is not part of it.
+///
+/// # Safety
+///
+/// Pointers are null or point to a material that was looked up and to room for the answer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn upglow_reradiation(
+    material: *const UpglowMaterial,
+    in_nm: f32,
+    out_nm: f32,
+    per_nm: *mut f32,
+) -> UpglowStatus {
+    guarded(|| {
+        // SAFETY: the caller keeps this function's promise.
+        let (material, output) = unsafe { (looked_up(material)?, Output::new(per_nm, "per_nm")?) };
+        output.write(material.reradiation_per_nm(in_nm, out_nm));
+        Ok(())
+    })
+}
+
+/// Share of incident light at `in_nm` that comes out at any wavelength, 0 to 1: reflectance and the
+/// integral of the re-radiation.
+///
+/// # Safety
+///
+/// Pointers are null or point to a material that was looked up and to room for the answer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn upglow_albedo(
+    material: *const UpglowMaterial,
+    in_nm: f32,
+    albedo: *mut f32,
+) -> UpglowStatus {
+    guarded(|| {
+        // SAFETY: the caller keeps this function's promise.
+        let (material, output) = unsafe { (looked_up(material)?, Output::new(albedo, "albedo")?) };
+        output.write(material.albedo(in_nm));
+        Ok(())
+    })
+}

@@ -1,0 +1,163 @@
+//! Pointers from C, checked for what can be checked.
+
+use std::ffi::{CStr, c_char};
+use std::ptr::NonNull;
+
+use crate::failure::Failure;
+
+fn checked<T>(pointer: *const T, argument: &'static str) -> Result<NonNull<T>, Failure> {
+    let checked = NonNull::new(pointer.cast_mut()).ok_or(Failure::Null { argument })?;
+    if !checked.is_aligned() {
+        let (address, alignment) = (pointer.addr(), align_of::<T>());
+        return Err(Failure::Misaligned { argument, address, alignment });
+    }
+    Ok(checked)
+}
+
+/// What a pointer points to.
+///
+/// # Safety
+///
+/// It is null or points to a `T` that lives, and is not written to, for `'a`.
+#[inline(always)]
+pub(crate) unsafe fn borrowed<'a, T>(
+    pointer: *const T,
+    argument: &'static str,
+) -> Result<&'a T, Failure> {
+    let pointer = checked(pointer, argument)?;
+    // SAFETY: it is neither null nor misaligned, and the caller promises the rest.
+    Ok(unsafe { pointer.as_ref() })
+}
+
+/// The first `N` values of an array.
+///
+/// # Safety
+///
+/// It is null or points to `N` values.
+#[inline(always)]
+pub(crate) unsafe fn array<T: Copy, const N: usize>(
+    pointer: *const T,
+    argument: &'static str,
+) -> Result<[T; N], Failure> {
+    // SAFETY: an array is its values in a row; the caller promises the rest.
+    unsafe { borrowed(pointer.cast::<[T; N]>(), argument) }.copied()
+}
+
+/// An array of `length` values; none if the length is 0, whatever the pointer.
+///
+/// # Safety
+///
+/// It is null or points to `length` values that live, and are not written to, for `'a`.
+pub(crate) unsafe fn slice<'a, T>(
+    pointer: *const T,
+    length: usize,
+    argument: &'static str,
+) -> Result<&'a [T], Failure> {
+    if length == 0 {
+        return Ok(&[]);
+    }
+    fits::<T>(length, argument)?;
+    let pointer = checked(pointer, argument)?;
+    // SAFETY: neither null nor misaligned, no larger than any object; the caller promises the rest.
+    Ok(unsafe { NonNull::slice_from_raw_parts(pointer, length).as_ref() })
+}
+
+/// An array of `length` values to write; none if the length is 0, whatever the pointer.
+///
+/// # Safety
+///
+/// It is null or points to `length` values that nobody else touches for `'a`; those that were never
+/// written are not read.
+pub(crate) unsafe fn slice_mut<'a, T>(
+    pointer: *mut T,
+    length: usize,
+    argument: &'static str,
+) -> Result<&'a mut [T], Failure> {
+    if length == 0 {
+        return Ok(&mut []);
+    }
+    fits::<T>(length, argument)?;
+    let pointer = checked(pointer, argument)?;
+    // SAFETY: neither null nor misaligned, no larger than any object; the caller promises the rest.
+    Ok(unsafe { NonNull::slice_from_raw_parts(pointer, length).as_mut() })
+}
+
+/// No object has more bytes than `isize` counts: a longer array is a negative number gone wrong.
+fn fits<T>(length: usize, argument: &'static str) -> Result<(), Failure> {
+    let most = isize::MAX.unsigned_abs() / size_of::<T>();
+    if length > most {
+        return Err(Failure::TooMany { argument, what: "values", found: length, most });
+    }
+    Ok(())
+}
+
+/// Text that ends with a zero byte.
+///
+/// # Safety
+///
+/// It is null or points to bytes that live, and are not written to, for `'a`; one of them is zero.
+pub(crate) unsafe fn text<'a>(
+    pointer: *const c_char,
+    argument: &'static str,
+) -> Result<&'a CStr, Failure> {
+    let pointer = checked(pointer, argument)?;
+    // SAFETY: it is not null, and the caller promises the rest.
+    Ok(unsafe { CStr::from_ptr(pointer.as_ptr()) })
+}
+
+/// A place for an answer, which is written last or never.
+#[derive(Debug)]
+pub(crate) struct Output<T>(NonNull<T>);
+
+impl<T> Output<T> {
+    /// # Safety
+    ///
+    /// The pointer is null or points to memory for a `T`, initialized or not, that nobody else
+    /// touches until it is written.
+    #[inline(always)]
+    pub(crate) unsafe fn new(pointer: *mut T, argument: &'static str) -> Result<Self, Failure> {
+        checked(pointer, argument).map(Self)
+    }
+
+    /// The same place, for a `U`.
+    ///
+    /// # Safety
+    ///
+    /// There is room for a `U`, which is aligned no more strictly than a `T`.
+    #[inline(always)]
+    pub(crate) unsafe fn narrowed<U>(self) -> Output<U> {
+        Output(self.0.cast())
+    }
+
+    #[inline(always)]
+    pub(crate) fn write(self, value: T) {
+        // SAFETY: `new` refused what is null or misaligned, and its caller promised the rest.
+        unsafe { self.0.write(value) };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_null_or_misaligned_is_refused_by_name() {
+        // SAFETY: null is refused.
+        let null = unsafe { array::<f32, 3>(std::ptr::null(), "rgb") }.unwrap_err();
+        assert_eq!(null.to_string(), "rgb is null, expected a pointer");
+        let odd = std::ptr::without_provenance::<f32>(0x1002);
+        // SAFETY: a misaligned pointer is refused.
+        let odd = unsafe { array::<f32, 3>(odd, "rgb") }.unwrap_err();
+        assert_eq!(odd.to_string(), "rgb is at address 0x1002, expected a multiple of 4");
+    }
+
+    #[test]
+    fn an_array_of_nothing_may_be_null_and_none_is_larger_than_memory() {
+        // SAFETY: null is no array of anything.
+        assert_eq!(unsafe { slice::<u8>(std::ptr::null(), 0, "bytes") }.unwrap(), [0; 0]);
+        let one = [0_u8];
+        // SAFETY: the length is refused before anything is read.
+        let all = unsafe { slice(one.as_ptr(), usize::MAX, "bytes") }.unwrap_err();
+        assert!(all.to_string().starts_with("bytes has 18446744073709551615 values"), "{all}");
+    }
+}

@@ -1,0 +1,192 @@
+//! Wavelengths drawn from a material, and how likely they were.
+
+use upglow::{Draw, Sample};
+
+use crate::failure::{UpglowStatus, guarded};
+use crate::material::{UpglowMaterial, looked_up};
+use crate::pointer::{Output, array};
+
+/// How a wavelength was drawn.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum UpglowDraw {
+    /// Nothing was drawn: the material carries no light at the known wavelength. The path ends.
+    Absorbed = 0,
+    /// The wavelength was kept.
+    Elastic = 1,
+    /// The wavelength was changed.
+    Fluorescent = 2,
+}
+
+/// A wavelength drawn from a material.
+///
+/// The elastic part is a Dirac delta: it has a probability and no density. The fluorescent part has
+/// a density, which combines with those of other strategies by multiple importance sampling.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UpglowSample {
+    /// How it was drawn.
+    pub draw: UpglowDraw,
+    /// The wavelength drawn, nm; the known one if nothing was drawn.
+    pub lambda_nm: f32,
+    /// Factor for the path's throughput: what the material carries divided by how likely the draw
+    /// was. It depends on the known wavelength alone; 0 if nothing was drawn.
+    pub throughput: f32,
+    /// How likely it was to keep the wavelength, 0 to 1; 0 unless it was kept.
+    pub probability: f32,
+    /// The density of the wavelength drawn, 1/nm; 0 unless it was changed.
+    pub pdf_per_nm: f32,
+}
+
+impl UpglowSample {
+    fn new(known_nm: f32, sample: Option<Sample<f32>>) -> Self {
+        let Some(Sample { nm: lambda_nm, throughput, draw }) = sample else {
+            let draw = UpglowDraw::Absorbed;
+            let (throughput, probability, pdf_per_nm) = (0.0, 0.0, 0.0);
+            return Self { draw, lambda_nm: known_nm, throughput, probability, pdf_per_nm };
+        };
+        let (draw, probability, pdf_per_nm) = match draw {
+            Draw::Elastic { probability } => (UpglowDraw::Elastic, probability, 0.0),
+            Draw::Fluorescent { per_nm } => (UpglowDraw::Fluorescent, 0.0, per_nm),
+        };
+        Self { draw, lambda_nm, throughput, probability, pdf_per_nm }
+    }
+}
+
+/// Draws the wavelength of incident light, given that of the light that leaves: a path from the
+/// camera.
+///
+/// `u` are 2 independent numbers in 0 to 1, 1 excluded; the first chooses between reflection and
+/// fluorescence, the second draws the wavelength.
+///
+/// cbindgen:ptrs-as-arrays=[[u; 2]]
+///
+/// # Safety
+///
+/// Pointers are null or point to a material that was looked up, to 2 values and to room for the
+/// sample.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn upglow_sample_incident(
+    material: *const UpglowMaterial,
+    out_nm: f32,
+    u: *const f32,
+    sample: *mut UpglowSample,
+) -> UpglowStatus {
+    guarded(|| {
+        // SAFETY: the caller keeps this function's promise.
+        let (material, u) = unsafe { (looked_up(material)?, array(u, "u")?) };
+        // SAFETY: the same.
+        let output = unsafe { Output::new(sample, "sample")? };
+        output.write(UpglowSample::new(out_nm, material.sample_incident(out_nm, u)));
+        Ok(())
+    })
+}
+
+/// The density, 1/nm, with which `upglow_sample_incident` draws `in_nm` by fluorescence.
+///
+/// # Safety
+///
+/// Pointers are null or point to a material that was looked up and to room for the answer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn upglow_incident_pdf(
+    material: *const UpglowMaterial,
+    in_nm: f32,
+    out_nm: f32,
+    per_nm: *mut f32,
+) -> UpglowStatus {
+    guarded(|| {
+        // SAFETY: the caller keeps this function's promise.
+        let (material, output) = unsafe { (looked_up(material)?, Output::new(per_nm, "per_nm")?) };
+        output.write(material.incident_pdf_per_nm(in_nm, out_nm));
+        Ok(())
+    })
+}
+
+/// The probability, 0 to 1, that `upglow_sample_incident` keeps the wavelength.
+///
+/// # Safety
+///
+/// Pointers are null or point to a material that was looked up and to room for the answer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn upglow_incident_elastic_probability(
+    material: *const UpglowMaterial,
+    out_nm: f32,
+    probability: *mut f32,
+) -> UpglowStatus {
+    guarded(|| {
+        // SAFETY: the caller keeps this function's promise.
+        let (material, output) =
+            unsafe { (looked_up(material)?, Output::new(probability, "probability")?) };
+        output.write(material.incident_elastic_probability(out_nm));
+        Ok(())
+    })
+}
+
+/// Draws the wavelength of the light that leaves, given that of incident light: a path from the
+/// light.
+///
+/// `u` are 2 independent numbers in 0 to 1, 1 excluded; the first chooses between reflection and
+/// fluorescence, the second draws the wavelength.
+///
+/// cbindgen:ptrs-as-arrays=[[u; 2]]
+///
+/// # Safety
+///
+/// Pointers are null or point to a material that was looked up, to 2 values and to room for the
+/// sample.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn upglow_sample_outgoing(
+    material: *const UpglowMaterial,
+    in_nm: f32,
+    u: *const f32,
+    sample: *mut UpglowSample,
+) -> UpglowStatus {
+    guarded(|| {
+        // SAFETY: the caller keeps this function's promise.
+        let (material, u) = unsafe { (looked_up(material)?, array(u, "u")?) };
+        // SAFETY: the same.
+        let output = unsafe { Output::new(sample, "sample")? };
+        output.write(UpglowSample::new(in_nm, material.sample_outgoing(in_nm, u)));
+        Ok(())
+    })
+}
+
+/// The density, 1/nm, with which `upglow_sample_outgoing` draws `out_nm` by fluorescence.
+///
+/// # Safety
+///
+/// Pointers are null or point to a material that was looked up and to room for the answer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn upglow_outgoing_pdf(
+    material: *const UpglowMaterial,
+    in_nm: f32,
+    out_nm: f32,
+    per_nm: *mut f32,
+) -> UpglowStatus {
+    guarded(|| {
+        // SAFETY: the caller keeps this function's promise.
+        let (material, output) = unsafe { (looked_up(material)?, Output::new(per_nm, "per_nm")?) };
+        output.write(material.outgoing_pdf_per_nm(in_nm, out_nm));
+        Ok(())
+    })
+}
+
+/// The probability, 0 to 1, that `upglow_sample_outgoing` keeps the wavelength.
+///
+/// # Safety
+///
+/// Pointers are null or point to a material that was looked up and to room for the answer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn upglow_outgoing_elastic_probability(
+    material: *const UpglowMaterial,
+    in_nm: f32,
+    probability: *mut f32,
+) -> UpglowStatus {
+    guarded(|| {
+        // SAFETY: the caller keeps this function's promise.
+        let (material, output) =
+            unsafe { (looked_up(material)?, Output::new(probability, "probability")?) };
+        output.write(material.outgoing_elastic_probability(in_nm));
+        Ok(())
+    })
+}

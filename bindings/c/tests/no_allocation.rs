@@ -1,0 +1,118 @@
+//! Once a cube is loaded, nothing allocates: neither answers nor failures.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+use std::ffi::CStr;
+use std::mem::MaybeUninit;
+use std::ptr::{null, null_mut};
+
+use upglow::{Cube, DyeModel, DyeOptions, DyeSet, Edge, FitRecord, Fluorescence, Model, Node};
+use upglow_c::*;
+use upglow_color::Contract;
+
+/// The system's allocator, counted for each thread.
+struct Counted;
+
+thread_local! {
+    static ALLOCATIONS: Cell<usize> = const { Cell::new(0) };
+}
+
+// SAFETY: it hands every call on to the system's allocator as it is.
+unsafe impl GlobalAlloc for Counted {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        ALLOCATIONS.set(ALLOCATIONS.get() + 1);
+        // SAFETY: the caller's promise is the system's condition.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: the caller's promise is the system's condition.
+        unsafe { System.dealloc(pointer, layout) };
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counted = Counted;
+
+fn allocations(work: impl FnOnce()) -> usize {
+    let before = ALLOCATIONS.get();
+    work();
+    ALLOCATIONS.get() - before
+}
+
+fn bytes() -> Vec<u8> {
+    let set = DyeSet::named("seed8").expect("built in");
+    let model = DyeModel::new(set, DyeOptions::default()).expect("valid");
+    let edge = Edge { edge_nm: 550.0, level: 0.5, slope_per_nm: 0.005 };
+    let fluorescence = Fluorescence::Dyes { first: 2, weight: 0.3, concentration: 0.8 };
+    let nodes = vec![Node::new(edge, fluorescence, 0.0); 8];
+    let (contract, record) = (Contract::default(), FitRecord::default());
+    let cube = Cube::new(contract, Model::Dyes(model), record, 2, nodes).expect("valid");
+    cube.to_bytes().expect("valid")
+}
+
+fn open() -> *mut UpglowCube {
+    let (bytes, mut cube) = (bytes(), null_mut());
+    // SAFETY: the pointers are those of a slice and of a variable.
+    let status = unsafe { upglow_cube_from_memory(bytes.as_ptr(), bytes.len(), &raw mut cube) };
+    assert_eq!(status, UpglowStatus::Ok);
+    cube
+}
+
+#[test]
+fn the_counter_counts() {
+    assert_eq!(allocations(|| drop(std::hint::black_box(Box::new(1)))), 1);
+}
+
+#[test]
+fn nothing_is_allocated_after_the_load() {
+    let (cube, mut colors) = (open(), null_mut());
+    // SAFETY: the pointers are those of a live cube and of a variable.
+    unsafe { upglow_colors_create(cube, null(), &raw mut colors) };
+    let mut material = MaybeUninit::<UpglowMaterial>::uninit();
+    let mut sample = MaybeUninit::<UpglowSample>::uninit();
+    let (rgb, nm, u) = ([0.2_f32, 0.5, 0.7], [450.0_f32; 8], [0.9_f32, 0.5]);
+    let (mut value, mut values, mut xyz) = (0.0, [0.0_f32; 8], [0.0_f32; 3]);
+    let mut statuses = [UpglowStatus::Internal; 8];
+    let count = allocations(|| {
+        let material_mut = material.as_mut_ptr();
+        // SAFETY: the pointers are those of live handles and of variables; the first call fills
+        // the material that the others read.
+        statuses = unsafe {
+            [
+                upglow_look_up(cube, rgb.as_ptr(), material_mut),
+                upglow_reflectance(material_mut, 500.0, &raw mut value),
+                upglow_reflectance_4(material_mut, nm.as_ptr(), values.as_mut_ptr()),
+                upglow_reflectance_8(material_mut, nm.as_ptr(), values.as_mut_ptr()),
+                upglow_albedo(material_mut, 450.0, &raw mut value),
+                upglow_sample_incident(material_mut, 540.0, u.as_ptr(), sample.as_mut_ptr()),
+                upglow_sample_outgoing(material_mut, 450.0, u.as_ptr(), sample.as_mut_ptr()),
+                upglow_xyz(colors, rgb.as_ptr(), xyz.as_mut_ptr(), 1, null_mut()),
+            ]
+        };
+    });
+    assert_eq!((count, statuses), (0, [UpglowStatus::Ok; 8]));
+    // SAFETY: nobody uses them any more.
+    unsafe {
+        upglow_colors_destroy(colors);
+        upglow_cube_destroy(cube);
+    }
+}
+
+#[test]
+fn a_failure_is_told_without_allocating() {
+    let cube = open();
+    let mut material = MaybeUninit::<UpglowMaterial>::uninit();
+    let rgb = [0.2_f32, 1.5, 0.7];
+    let mut status = UpglowStatus::Ok;
+    let count = allocations(|| {
+        // SAFETY: the pointers are those of a live cube and of variables.
+        status = unsafe { upglow_look_up(cube, rgb.as_ptr(), material.as_mut_ptr()) };
+    });
+    assert_eq!((count, status), (0, UpglowStatus::Outside));
+    // SAFETY: the message ends with a zero byte and is not written to meanwhile.
+    let message = unsafe { CStr::from_ptr(upglow_message()) };
+    assert_eq!(message.to_str(), Ok("green is 1.5, expected 0 to 1, the range of the cube"));
+    // SAFETY: nobody uses it any more.
+    unsafe { upglow_cube_destroy(cube) };
+}

@@ -1,0 +1,59 @@
+"""Physically valid spectral materials, with fluorescence, for any RGB color.
+
+A *contract* says what RGB means. A *cube* holds a material for each node of a grid over RGB, and
+answers for arrays of colors: reflectance, re-radiation, color under any light, sampling.
+
+    >>> import upglow
+    >>> cube = upglow.build(upglow.Contract(space="acescg"), resolution=9)
+    >>> cube.reflectance([0.9, 0.1, 0.8], [450.0, 550.0, 650.0]).round(2).tolist()
+    [0.75, 0.11, 0.59]
+    >>> cube.reradiation([0.9, 0.1, 0.8], 550.0, [560.0, 600.0, 640.0]).shape
+    (3,)
+
+Conventions, everywhere:
+
+- RGB is linear, in the contract's space, of shape ``(..., 3)``. Results keep the leading shape.
+- Wavelengths are nm. Densities over wavelength are per nm.
+- XYZ is relative: Y = 1 is the perfect diffuser under the contract's illuminant.
+- float32 RGB is answered in single precision where the library has it, all other types in double.
+- Every color is worked on alone: how many threads there are, and how an array is cut, changes no bit.
+- ``threads=None`` uses one thread for each core; Python's lock is released meanwhile.
+- Bad input is a ``ValueError`` that says what was found and what was expected.
+
+The library's own documentation, the file format and the physics: see the repository's ``README.md``,
+``docs/cube-format.md`` and ``docs/decisions``.
+"""
+
+from ._contract import Contract
+from ._cube import Cube, CubeCheck, CubeSummary, Samples, build
+from ._illuminant import Illuminant
+from ._materials import Corners, Materials
+from ._models import Analytic, Dye, Dyes, Reflectance
+from ._standing import Kind, Standing, standing
+from ._upglow import __version__
+from ._verify import Check, VerifyReport
+from ._wavelengths import FINE_NM, FIT_NM
+
+__all__ = [
+    "FINE_NM",
+    "FIT_NM",
+    "Analytic",
+    "Check",
+    "Contract",
+    "Corners",
+    "Cube",
+    "CubeCheck",
+    "CubeSummary",
+    "Dye",
+    "Dyes",
+    "Illuminant",
+    "Kind",
+    "Materials",
+    "Reflectance",
+    "Samples",
+    "Standing",
+    "VerifyReport",
+    "__version__",
+    "build",
+    "standing",
+]

@@ -1,0 +1,77 @@
+"""Arrays of any leading shape, as the rows that the native half works on."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _upglow
+from ._materials import Materials
+
+Shape = tuple[int, ...]
+
+
+def rgb_array(rgb: ArrayLike) -> NDArray[Any]:
+    """RGB of shape (..., 3) in float32, where it is that already, or float64."""
+    array = np.asarray(rgb)
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f"rgb has dtype {array.dtype}, expected numbers")
+    if array.ndim == 0 or array.shape[-1] != 3:
+        raise ValueError(f"rgb has shape {array.shape}, expected (..., 3)")
+    return array if array.dtype == np.float32 else array.astype(np.float64, copy=False)
+
+
+def within(rgb: ArrayLike, outside: str) -> NDArray[Any]:
+    """RGB that was treated as ``outside`` says."""
+    array = rgb_array(rgb)
+    if outside == "raise":
+        refuse_outside(array, to_fit=False)
+        return array
+    if outside == "clip":
+        clipped: NDArray[Any] = np.clip(array, 0.0, 1.0)
+        return clipped
+    if outside == "nan":
+        return array
+    raise ValueError(f"outside is {outside!r}, expected raise, nan or clip")
+
+
+def refuse_outside(array: NDArray[Any], *, to_fit: bool) -> None:
+    """Raises for the first RGB out of range, by index and value."""
+    found = _upglow.first_outside(rows(array), to_fit)
+    if found is not None:
+        row, message = found
+        index = ", ".join(str(i) for i in np.unravel_index(row, array.shape[:-1]))
+        raise ValueError(f"rgb[{index}]: {message}" if index else f"rgb: {message}")
+
+
+def rows(array: NDArray[Any]) -> NDArray[Any]:
+    """The array as rows of its last axis, without gaps."""
+    return np.ascontiguousarray(array).reshape(-1, array.shape[-1])
+
+
+def single_rows(array: NDArray[Any]) -> NDArray[np.float32]:
+    """RGB as rows in single precision."""
+    return rows(array.astype(np.float32, copy=False))
+
+
+def subjects(of: ArrayLike | Materials, outside: str) -> tuple[Any, Shape]:
+    """What is evaluated, as the native half takes it, and its leading shape."""
+    if isinstance(of, Materials):
+        return of._rows(), of.shape
+    array = within(of, outside)
+    return rows(array), array.shape[:-1]
+
+
+def broadcast(
+    of: ArrayLike | Materials, outside: str, *numbers: NDArray[np.float64]
+) -> tuple[Any, list[NDArray[np.float64]], Shape]:
+    """What is evaluated and numbers for each of it, all of one leading shape."""
+    subject = of if isinstance(of, Materials) else within(of, outside)
+    lead = subject.shape if isinstance(subject, Materials) else subject.shape[:-1]
+    shape = np.broadcast_shapes(lead, *(number.shape for number in numbers))
+    flat = [np.ascontiguousarray(np.broadcast_to(n, shape)).reshape(-1) for n in numbers]
+    if isinstance(subject, Materials):
+        return subject.broadcast_to(shape)._rows(), flat, shape
+    return rows(np.broadcast_to(subject, (*shape, 3))), flat, shape

@@ -1,0 +1,700 @@
+"""Cubes: a material for any RGB color."""
+
+from __future__ import annotations
+
+import json
+import os
+import warnings
+from collections import OrderedDict
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _upglow
+from ._arrays import (
+    Shape,
+    broadcast,
+    refuse_outside,
+    rgb_array,
+    rows,
+    single_rows,
+    subjects,
+    within,
+)
+from ._contract import Contract
+from ._illuminant import Illuminant
+from ._materials import Corners, Materials
+from ._models import Dyes, Model
+from ._progress import Report, reporting
+from ._standing import standing
+from ._verify import Check, VerifyReport
+from ._wavelengths import FIT_NM, grid, wavelength_list
+
+if TYPE_CHECKING:
+    import colour
+
+_REMEMBERED_LIGHTS = 8
+"""Lights whose colors a cube keeps; each takes 16 bytes a node."""
+
+
+class Samples(NamedTuple):
+    """Wavelengths drawn from materials; each array has the shape of what was asked."""
+
+    nm: NDArray[Any]
+    """The wavelengths drawn, nm; not-a-number where nothing comes back."""
+    throughput: NDArray[Any]
+    """Factor of the path's throughput: what the material carries divided by ``pdf``."""
+    pdf: NDArray[Any]
+    """Elastic: the probability, 0 to 1, of keeping the wavelength. Else the density, 1/nm."""
+    is_elastic: NDArray[np.bool_]
+    """Whether the wavelength was kept."""
+
+
+class CubeCheck(NamedTuple):
+    """What a cube makes of colors, beside what physics allows; each array has shape (...)."""
+
+    kind: NDArray[np.uint8]
+    """A `Kind` for each color: what it takes to show it."""
+    distance: NDArray[np.float64]
+    """As in `Standing`."""
+    nearest_de2000: NDArray[np.float64]
+    """CIEDE2000 to the nearest color within reach, interpolated; 0 within reach."""
+    de2000: NDArray[np.float32]
+    """CIEDE2000 of the cube's material against the color, sums over 5 nm."""
+
+
+@dataclass(frozen=True)
+class CubeSummary:
+    """How well the nodes of a cube match their colors."""
+
+    nodes: int
+    """Nodes of the cube."""
+    exact: int
+    """Nodes within 0.01 CIEDE2000 of their color."""
+    within_1: int
+    """Nodes within 1 CIEDE2000."""
+    within_2: int
+    """Nodes within 2 CIEDE2000."""
+    mean_de2000: float
+    """Mean CIEDE2000 over the nodes."""
+    p95_de2000: float
+    """The smallest CIEDE2000 that at least 95 in 100 nodes do not exceed."""
+    max_de2000: float
+    """Greatest CIEDE2000 of a node."""
+    fluorescent: int
+    """Nodes whose material fluoresces."""
+
+
+def build(
+    contract: Contract | None = None,
+    *,
+    model: Model | None = None,
+    resolution: int = 32,
+    slope_max_per_nm: float | None = 0.01,
+    metric: str = "de2000",
+    method: str = "search",
+    sweeps: int | None = None,
+    threads: int | None = None,
+    progress: bool | Report = False,
+) -> Cube:
+    """Fit a material for every node of a grid over RGB. Ctrl-C stops it.
+
+    Parameters
+    ----------
+    contract
+        What RGB means; ACEScg under D65 by default.
+    model
+        `Dyes` (default), `Analytic` or `Reflectance`.
+    resolution
+        Nodes along each axis, 2 to 256.
+    slope_max_per_nm
+        Greatest slope of any reflectance, 0.0001 to 0.2 per nm, or ``None`` for 0.2.
+    metric
+        Color difference to minimize: ``de2000``, ``de76`` or ``rgb``.
+    method
+        ``search`` (ours), ``exhaustive`` (slower, its yardstick), ``seed`` or ``seed-features``.
+    sweeps
+        How often a node that missed its color tries its neighbors' materials; by default 2, and 4
+        for the seed's methods.
+    threads
+        Threads; one for each core by default. The cube does not depend on it.
+    progress
+        ``True`` shows a bar: tqdm's, which knows notebooks, or plain text in a terminal. Or a
+        function that takes stage, units done and units in all.
+
+    Raises
+    ------
+    ValueError
+        If an option is unknown or out of range.
+
+    Examples
+    --------
+    >>> import upglow
+    >>> cube = upglow.build(upglow.Contract(space="rec2020"), resolution=5)
+    >>> cube.summary().nodes
+    125
+    """
+    native = (model or Dyes())._native()
+    if getattr(model, "quantum_yield", None) == "measured" and native.without_published_yield:
+        names = ", ".join(native.without_published_yield)
+        warnings.warn(f"no published quantum yield, taken as 1: {names}", stacklevel=2)
+    options = (metric, slope_max_per_nm, method, sweeps)
+    agreed = (contract or Contract())._native
+    with reporting(progress) as report:
+        return Cube._of(_upglow.build(agreed, native, resolution, options, threads, report))
+
+
+class Cube:
+    """Materials for every node of a regular grid over linear RGB, 0 to 1 in each channel.
+
+    Made by `upglow.build`, `Cube.read` or `Cube.from_bytes`. Between nodes, the materials of the
+    four nodes around a color are mixed: where they match their colors, so does every color between
+    them, and energy, bounds and slope limit hold everywhere.
+
+    Wherever a method takes ``of``, it is linear RGB of shape (..., 3) in the cube's space, or
+    `Materials`, such as ``cube.nodes`` or what `material` and `fit` return. Other arguments broadcast
+    against the leading shape (...) by numpy's rules. RGB in float32 is answered in float32, all other
+    types in float64.
+
+    ``outside`` says what happens to RGB that is not a number in 0 to 1: ``raise`` a ValueError that
+    names index and value, ``nan`` answers with not-a-number, ``clip`` takes the nearest color of the
+    cube (not-a-number stays what it is).
+
+    ``threads`` is a number of threads; by default one for each core. No answer depends on it.
+    """
+
+    __slots__ = ("_colors", "_contract", "_native")
+
+    _native: _upglow.Cube
+    _contract: Contract
+    _colors: OrderedDict[tuple[Illuminant | None, str, int], _upglow.Colors]
+
+    def __init__(self) -> None:
+        raise TypeError("a cube comes from upglow.build, Cube.read or Cube.from_bytes")
+
+    @classmethod
+    def _of(cls, native: _upglow.Cube) -> Cube:
+        cube = cls.__new__(cls)
+        cube._native = native
+        cube._contract = Contract._of(native.contract())
+        cube._colors = OrderedDict()
+        return cube
+
+    # Files
+
+    @classmethod
+    def read(cls, path: str | os.PathLike[str]) -> Cube:
+        """Read a cube's file.
+
+        ``OSError`` if it cannot be read; ``ValueError`` if it is no cube, or was damaged.
+        """
+        return cls._of(_upglow.Cube.read(path))
+
+    @classmethod
+    def from_bytes(cls, content: bytes) -> Cube:
+        """Read a cube from the content of its file; ``ValueError`` if it is none."""
+        return cls._of(_upglow.Cube.from_bytes(content))
+
+    def write(self, path: str | os.PathLike[str]) -> None:
+        """Write the cube's file. It appears whole or, on any failure, not at all (``OSError``)."""
+        self._native.write(path)
+
+    def to_bytes(self) -> bytes:
+        """The content of the cube's file; the same cube gives the same bytes."""
+        return self._native.to_bytes()
+
+    # What it is
+
+    @property
+    def contract(self) -> Contract:
+        """What RGB means here."""
+        return self._contract
+
+    @property
+    def resolution(self) -> int:
+        """Nodes along each axis."""
+        return self._native.resolution
+
+    @property
+    def header(self) -> dict[str, Any]:
+        """What the file says of itself: contract, model, fit. Fields: docs/cube-format.md."""
+        header: dict[str, Any] = json.loads(self._native.header_json())
+        return header
+
+    @property
+    def model(self) -> str:
+        """``reflectance``, ``dyes`` or ``analytic``."""
+        kind: str = self.header["model"]["kind"]
+        return kind
+
+    @property
+    def nodes(self) -> Materials:
+        """A copy of the nodes' materials, ``[blue][green][red]``; shape (n, n, n).
+
+        Node i of an axis of n stands for the linear value i / (n - 1).
+        """
+        n = self.resolution
+        return Materials._of(self._native.nodes(), (n, n, n), self.model)
+
+    @property
+    def dye_names(self) -> list[str]:
+        """The dyes in ring order; empty where the model has none."""
+        return [dye["name"] for dye in self.header["model"].get("dyes") or []]
+
+    @property
+    def dye_curves(self) -> NDArray[np.float64]:
+        """Absorption (0 to 1) and emission (unit area, 1/nm) of each dye as the model uses them.
+
+        ``[dye][absorption, emission][wavelength]`` over ``upglow.FINE_NM``; shape (dyes, 2, 531).
+        """
+        return self._native.dye_curves().reshape(-1, 2, 531)
+
+    def summary(self) -> CubeSummary:
+        """How well the nodes match their colors, from the differences that the cube stores."""
+        return CubeSummary(*self._native.summary())
+
+    def __repr__(self) -> str:
+        n = self.resolution
+        return f"Cube({n}x{n}x{n} {self.model}, {self.contract!r})"
+
+    def __reduce__(self) -> tuple[Any, tuple[bytes]]:
+        return Cube.from_bytes, (self.to_bytes(),)
+
+    # Color
+
+    def xyz(
+        self,
+        rgb: ArrayLike,
+        *,
+        light: Any = None,
+        scale: str = "white",
+        step_nm: int = 5,
+        outside: str = "raise",
+        threads: int | None = None,
+    ) -> NDArray[np.float32]:
+        """XYZ of the materials, in single precision.
+
+        The first call for a light prepares a table; from then on, tens of millions of colors a
+        second.
+
+        Parameters
+        ----------
+        rgb
+            Linear RGB, shape (..., 3).
+        light
+            An `Illuminant`, or what one is made from; the contract's by default.
+        scale
+            ``white``: the perfect diffuser is Y = 1 under any light. ``power``: the light has as
+            much power from 300 to 830 nm as the contract's; an ultraviolet lamp leaves a white wall
+            nearly black, and fluorescence not.
+        step_nm
+            Colors are sums over 5 nm, as in fits and in the stored differences, or over 1 nm.
+
+        Returns
+        -------
+        float32 array of shape (..., 3)
+        """
+        array = within(rgb, outside)
+        colors = self._colors_under(light, scale, step_nm)
+        return colors.xyz(single_rows(array), threads).reshape(array.shape)
+
+    def rgb_under(
+        self,
+        rgb: ArrayLike,
+        light: Any,
+        *,
+        scale: str = "white",
+        step_nm: int = 5,
+        outside: str = "raise",
+        threads: int | None = None,
+    ) -> NDArray[np.float32]:
+        """Linear RGB, in the contract's space, of the materials under another light.
+
+        As `xyz`, then to RGB: with ``scale="white"`` by an eye adapted to that light, where the
+        contract adapts; with ``scale="power"`` by one adapted to the contract's own light.
+
+        Returns
+        -------
+        float32 array of shape (..., 3); not limited to 0 to 1
+        """
+        array = within(rgb, outside)
+        colors = self._colors_under(light, scale, step_nm)
+        return colors.rgb(single_rows(array), threads).reshape(array.shape)
+
+    def check(self, rgb: ArrayLike, *, threads: int | None = None) -> CubeCheck:
+        """What it takes to show colors, and how far this cube's materials are from them.
+
+        ``rgb`` is linear RGB of shape (..., 3); any finite numbers. Outside the cube ``de2000`` is
+        not-a-number.
+        """
+        array = rgb_array(rgb)
+        kind, distance, nearest_de2000 = standing(array, self._contract, threads=threads)
+        own = self._colors_under(None, "white", 5)
+        de2000 = own.de2000(single_rows(array), threads).reshape(array.shape[:-1])
+        return CubeCheck(kind, distance, nearest_de2000, de2000)
+
+    def _colors_under(self, light: Any, scale: str, step_nm: int) -> _upglow.Colors:
+        illuminant = None if light is None else Illuminant(light)
+        key = (illuminant, scale, step_nm)
+        if key not in self._colors:
+            native = None if illuminant is None else illuminant._native
+            colors = _upglow.colors(self._native, native, scale, step_nm)
+            while len(self._colors) >= _REMEMBERED_LIGHTS:
+                self._colors.popitem(last=False)
+            self._colors[key] = colors
+            return colors
+        return self._colors[key]
+
+    # Spectra
+
+    def reflectance(
+        self,
+        of: ArrayLike | Materials,
+        wavelengths_nm: ArrayLike,
+        *,
+        outside: str = "raise",
+        threads: int | None = None,
+    ) -> NDArray[Any]:
+        """Share of incident light that is reflected at the same wavelength, 0 to 1.
+
+        ``wavelengths_nm`` is a list of n wavelengths, or one.
+
+        Returns
+        -------
+        array of shape (..., n), or (...) for one wavelength
+        """
+        native, shape = subjects(of, outside)
+        nm = wavelength_list(wavelengths_nm)
+        found = _upglow.reflectance(self._native, native, nm.reshape(-1).tolist(), threads)
+        return _shaped(found, (*shape, *nm.shape))
+
+    def albedo(
+        self,
+        of: ArrayLike | Materials,
+        wavelengths_nm: ArrayLike,
+        *,
+        outside: str = "raise",
+        threads: int | None = None,
+    ) -> NDArray[Any]:
+        """Share of light at each wavelength that comes back at any wavelength, 0 to 1.
+
+        Shapes as in `reflectance`.
+        """
+        native, shape = subjects(of, outside)
+        nm = wavelength_list(wavelengths_nm)
+        found = _upglow.albedo(self._native, native, nm.reshape(-1).tolist(), threads)
+        return _shaped(found, (*shape, *nm.shape))
+
+    def reradiation(
+        self,
+        of: ArrayLike | Materials,
+        in_nm: ArrayLike,
+        out_nm: ArrayLike,
+        *,
+        outside: str = "raise",
+        threads: int | None = None,
+    ) -> NDArray[Any]:
+        """Energy that leaves per nm at ``out_nm`` by fluorescence, per unit that came at ``in_nm``.
+
+        1/nm. Reflection at the same wavelength is `reflectance`. ``in_nm`` and ``out_nm`` broadcast
+        against the leading shape of ``of``; the result has that shape.
+        """
+        native, (incident, outgoing), shape = broadcast(of, outside, _nm(in_nm), _nm(out_nm))
+        found = _upglow.reradiation(self._native, native, incident, outgoing, threads)
+        return _shaped(found, shape)
+
+    def reradiation_matrix(
+        self,
+        of: ArrayLike | Materials,
+        wavelengths_nm: ArrayLike = FIT_NM,
+        *,
+        outside: str = "raise",
+        threads: int | None = None,
+    ) -> NDArray[np.float64]:
+        """The re-radiation (Donaldson) matrix over the bands around n wavelengths.
+
+        Entry ``[..., out, in]`` is the share of the energy that comes in at wavelength ``in`` and
+        leaves within half a step of ``out``; reflectance is on the diagonal. Each column adds up to
+        at most 1. Wavelengths are whole nm in equal steps; by default 300, 305 … 830 nm.
+
+        Returns
+        -------
+        float64 array of shape (..., n, n)
+        """
+        native, shape = subjects(of, outside)
+        band = grid(wavelengths_nm)
+        found = _upglow.reradiation_matrix(self._native, native, band, threads)
+        n = (band[1] - band[0]) // band[2] + 1
+        return found.reshape(*shape, n, n)
+
+    def radiance_factor(
+        self,
+        of: ArrayLike | Materials,
+        wavelengths_nm: ArrayLike = FIT_NM,
+        *,
+        light: Any = None,
+        outside: str = "raise",
+        threads: int | None = None,
+    ) -> NDArray[np.float64]:
+        """Total radiance factor under a light: what leaves at each wavelength over what comes there.
+
+        Reflectance and fluorescence together, as a spectrophotometer with that lamp sees them; above
+        1 where a material shines. Its color under the light is the material's. Not-a-number where
+        the light is dark. ``light`` is an `Illuminant`, or what one is made from; the contract's by
+        default. Wavelengths as in `reradiation_matrix`; light outside them excites nothing.
+
+        Returns
+        -------
+        float64 array of shape (..., n)
+        """
+        matrix = self.reradiation_matrix(of, wavelengths_nm, outside=outside, threads=threads)
+        illuminant = self._contract.illuminant if light is None else Illuminant(light)
+        first, last, step = grid(wavelengths_nm)
+        if first < 300 or last > 830:
+            raise ValueError(f"wavelengths {first} to {last} nm, expected within 300 to 830 nm")
+        power = illuminant.power[first - 300 : last - 299 : step]
+        back = matrix @ power
+        factor: NDArray[np.float64] = np.full(back.shape, np.nan)
+        return np.divide(back, power, out=factor, where=power > 0)
+
+    def spectral_distribution(
+        self,
+        rgb: ArrayLike,
+        wavelengths_nm: ArrayLike = FIT_NM,
+        *,
+        light: Any = None,
+        outside: str = "raise",
+    ) -> colour.SpectralDistribution:
+        """The total radiance factor of one color, as colour-science's own type.
+
+        ``rgb`` is of shape (3,); the rest as in `radiance_factor`. ``ImportError`` without the
+        package ``colour-science``.
+        """
+        try:
+            import colour
+        except ImportError as error:
+            raise ImportError("spectral_distribution needs the package colour-science") from error
+        array = rgb_array(rgb)
+        if array.shape != (3,):
+            raise ValueError(f"rgb has shape {array.shape}, expected (3,)")
+        factor = self.radiance_factor(array, wavelengths_nm, light=light, outside=outside)
+        name = f"{self.contract.space} {tuple(array.tolist())}"
+        nm = np.asarray(wavelengths_nm, dtype=np.float64)
+        return colour.SpectralDistribution(factor, nm, name=name)
+
+    # Sampling
+
+    def sample_incident(
+        self,
+        of: ArrayLike | Materials,
+        out_nm: ArrayLike,
+        u: ArrayLike,
+        *,
+        outside: str = "raise",
+        threads: int | None = None,
+    ) -> Samples:
+        """Draw the wavelength of incident light, given that of the light that leaves.
+
+        The camera's way. ``u`` holds two independent numbers in 0 to 1, 1 excluded, on its last
+        axis: the first chooses between reflection and fluorescence, the second draws. ``out_nm`` and
+        ``u[..., 0]`` broadcast against the leading shape of ``of``.
+        """
+        return self._sample(of, "incident", out_nm, u, outside, threads)
+
+    def sample_outgoing(
+        self,
+        of: ArrayLike | Materials,
+        in_nm: ArrayLike,
+        u: ArrayLike,
+        *,
+        outside: str = "raise",
+        threads: int | None = None,
+    ) -> Samples:
+        """Draw the wavelength of the light that leaves, given that of incident light.
+
+        The light's way; arguments as in `sample_incident`.
+        """
+        return self._sample(of, "outgoing", in_nm, u, outside, threads)
+
+    def incident_pdf_per_nm(
+        self,
+        of: ArrayLike | Materials,
+        in_nm: ArrayLike,
+        out_nm: ArrayLike,
+        *,
+        outside: str = "raise",
+        threads: int | None = None,
+    ) -> NDArray[Any]:
+        """Density, 1/nm, with which `sample_incident` draws ``in_nm`` by fluorescence.
+
+        Shapes as in `reradiation`.
+        """
+        return self._pdf(of, "incident", in_nm, out_nm, outside, threads)
+
+    def outgoing_pdf_per_nm(
+        self,
+        of: ArrayLike | Materials,
+        in_nm: ArrayLike,
+        out_nm: ArrayLike,
+        *,
+        outside: str = "raise",
+        threads: int | None = None,
+    ) -> NDArray[Any]:
+        """Density, 1/nm, with which `sample_outgoing` draws ``out_nm`` by fluorescence.
+
+        Shapes as in `reradiation`.
+        """
+        return self._pdf(of, "outgoing", in_nm, out_nm, outside, threads)
+
+    def incident_elastic_probability(
+        self,
+        of: ArrayLike | Materials,
+        out_nm: ArrayLike,
+        *,
+        outside: str = "raise",
+        threads: int | None = None,
+    ) -> NDArray[Any]:
+        """Probability, 0 to 1, that `sample_incident` keeps the wavelength."""
+        return self._elastic(of, "incident", out_nm, outside, threads)
+
+    def outgoing_elastic_probability(
+        self,
+        of: ArrayLike | Materials,
+        in_nm: ArrayLike,
+        *,
+        outside: str = "raise",
+        threads: int | None = None,
+    ) -> NDArray[Any]:
+        """Probability, 0 to 1, that `sample_outgoing` keeps the wavelength."""
+        return self._elastic(of, "outgoing", in_nm, outside, threads)
+
+    def _sample(
+        self,
+        of: ArrayLike | Materials,
+        drawn: str,
+        known_nm: ArrayLike,
+        u: ArrayLike,
+        outside: str,
+        threads: int | None,
+    ) -> Samples:
+        numbers = np.asarray(u, dtype=np.float64)
+        if numbers.ndim == 0 or numbers.shape[-1] != 2:
+            raise ValueError(f"u has shape {numbers.shape}, expected (..., 2)")
+        if not np.all((numbers >= 0.0) & (numbers < 1.0)):
+            raise ValueError("u holds a number that is not in 0 to 1, 1 excluded")
+        native, (known, first, second), shape = broadcast(
+            of, outside, _nm(known_nm), numbers[..., 0], numbers[..., 1]
+        )
+        pairs = np.stack([first, second], axis=-1)
+        found = _upglow.sample(self._native, native, drawn, known, pairs, threads)
+        nm, throughput, pdf, is_elastic = (_shaped(found[:, k], shape) for k in range(4))
+        return Samples(nm, throughput, pdf, is_elastic == 1.0)
+
+    def _pdf(
+        self,
+        of: ArrayLike | Materials,
+        drawn: str,
+        in_nm: ArrayLike,
+        out_nm: ArrayLike,
+        outside: str,
+        threads: int | None,
+    ) -> NDArray[Any]:
+        native, (incident, outgoing), shape = broadcast(of, outside, _nm(in_nm), _nm(out_nm))
+        found = _upglow.pdf_per_nm(self._native, native, drawn, incident, outgoing, threads)
+        return _shaped(found, shape)
+
+    def _elastic(
+        self,
+        of: ArrayLike | Materials,
+        drawn: str,
+        known_nm: ArrayLike,
+        outside: str,
+        threads: int | None,
+    ) -> NDArray[Any]:
+        native, (known,), shape = broadcast(of, outside, _nm(known_nm))
+        found = _upglow.elastic_probability(self._native, native, drawn, known, threads)
+        return _shaped(found, shape)
+
+    # Materials
+
+    def material(
+        self, rgb: ArrayLike, *, outside: str = "raise", threads: int | None = None
+    ) -> Materials:
+        """One material for each color, as a texture stores it, in single precision.
+
+        From the nodes around a color a few steps lead to a single material that shows it. Neighbors
+        end as neighbors; grays are flat; the cube's slope limit holds. Each call prepares a table
+        first, so give whole pictures. ``rgb`` has shape (..., 3), the result (...).
+        """
+        array = within(rgb, outside)
+        found = _upglow.polish(self._native, single_rows(array), threads)
+        return Materials._of(found, array.shape[:-1], self.model)
+
+    def fit(
+        self, rgb: ArrayLike, *, threads: int | None = None, progress: bool | Report = False
+    ) -> Materials:
+        """Fit each color as the cube's nodes were fitted, instead of looking it up. Ctrl-C stops it.
+
+        ``rgb`` has shape (..., 3) and may be brighter than white: 0 to 10. About a millisecond a
+        color. The result has shape (...).
+        """
+        array = rgb_array(rgb).astype(np.float64, copy=False)
+        refuse_outside(array, to_fit=True)
+        with reporting(progress) as report:
+            found = _upglow.fit(self._native, rows(array), threads, report)
+        return Materials._of(found, array.shape[:-1], self.model)
+
+    def corners(self, rgb: ArrayLike, *, outside: str = "raise") -> Corners:
+        """The four nodes around each color and their weights.
+
+        ``cube.nodes[tuple(np.moveaxis(cube.corners(rgb).nodes, -1, 0))]`` are their materials.
+        """
+        array = within(rgb, outside).astype(np.float64, copy=False)
+        number, weights = _upglow.corners(self._native, rows(array))
+        shape, n = (*array.shape[:-1], 4), self.resolution
+        nodes = np.stack(np.unravel_index(number.reshape(shape), (n, n, n)), axis=-1)
+        return Corners(nodes, weights.reshape(shape))
+
+    # Verification
+
+    def verify(
+        self,
+        *,
+        points: int = 1_000_000,
+        interpolation: str = "blend",
+        seed: int = 0,
+        threads: int | None = None,
+        progress: bool | Report = False,
+    ) -> VerifyReport:
+        """Recompute, at every nm, all that the cube promises, by code of its own. Ctrl-C stops it.
+
+        Parameters
+        ----------
+        points
+            Random colors between the nodes; each takes 15 µs of a core.
+        interpolation
+            What stands between the nodes: ``blend``, ``none``, ``coefficients``, ``features`` or
+            ``hybrid``.
+        seed
+            Where the random colors start.
+        progress
+            As in `upglow.build`.
+        """
+        with reporting(progress) as report:
+            nodes, tried, holds, checks = _upglow.verify(
+                self._native, points, interpolation, seed, threads, report
+            )
+        found = tuple(Check(*check) for check in checks)
+        return VerifyReport(nodes=nodes, points=tried, holds=holds, checks=found)
+
+
+def _nm(wavelengths_nm: ArrayLike) -> NDArray[np.float64]:
+    return np.asarray(wavelengths_nm, dtype=np.float64)
+
+
+def _shaped(found: NDArray[Any], shape: Shape) -> NDArray[Any]:
+    """The numbers in their shape; a number where there is only one."""
+    shaped: NDArray[Any] = found.reshape(shape)[()]
+    return shaped

@@ -1,0 +1,136 @@
+"""What fluoresces in a material, and by what rules."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from . import _upglow
+from ._illuminant import is_path
+from ._wavelengths import samples
+
+
+@dataclass(frozen=True, kw_only=True)
+class Dye:
+    """A measured dye. Curves are pairs ``(wavelengths_nm, values)`` or colour-science's spectra.
+
+    Parameters
+    ----------
+    name
+        The dye's name.
+    absorption
+        Share of incident light that is absorbed, 0 to 1; 1 is black at that wavelength.
+    emission
+        Emission, relative, 0 or more, at the same wavelengths.
+    quantum_yield
+        Share of the absorbed photons that come out, 0 to 1; ``None`` where nobody measured it.
+
+    Wavelengths ascend from 300 to 830 nm in steps of at most 5 nm. Not-a-number at either end of a
+    curve means that it was not measured there, and counts as zero.
+    """
+
+    name: str
+    absorption: Any
+    emission: Any
+    quantum_yield: float | None = None
+
+    def _samples(self) -> tuple[str, list[float], list[float], list[float], float | None]:
+        nm, absorption = samples(f"absorption of {self.name}", self.absorption)
+        emission_nm, emission = samples(f"emission of {self.name}", self.emission)
+        if nm.tolist() != emission_nm.tolist():
+            raise ValueError(f"dye {self.name}: emission at other wavelengths, expected the same")
+        yields = None if self.quantum_yield is None else float(self.quantum_yield)
+        return self.name, nm.tolist(), absorption.tolist(), emission.tolist(), yields
+
+
+@dataclass(frozen=True, kw_only=True)
+class Dyes:
+    """Fluorescence by two neighbors of a ring of measured dyes.
+
+    Parameters
+    ----------
+    set
+        A built-in set (``seed8``, ``open8``, ``wide14``), a folder of CSV files with the header
+        ``wavelength_nm,absorption,emission``, or a list of `Dye` in ring order.
+    accounting
+        What is conserved when light is given back: ``energy`` or ``photon``.
+    mixing
+        ``pooled``: what either dye absorbs comes out as the mixed emission. ``separate``: each dye
+        gives back what it absorbed itself.
+    quantum_yield
+        Share of absorbed light that comes out, 0 to 1, or ``"measured"``.
+    optical_density
+        Density A > 0 that the dyes are loaded to at their peak: the absorptance is then
+        1 - 10^(-A·a). ``None``: a itself, a thin solution.
+    """
+
+    set: str | os.PathLike[str] | Sequence[Dye] = "seed8"
+    accounting: str = "energy"
+    mixing: str = "pooled"
+    quantum_yield: float | str = 1.0
+    optical_density: float | None = None
+
+    @staticmethod
+    def sets() -> list[str]:
+        """The names of the built-in sets."""
+        return _upglow.DyeSet.names()
+
+    def names(self) -> list[str]:
+        """The dyes' names in ring order."""
+        return self._native_set().dyes
+
+    def _native_set(self) -> _upglow.DyeSet:
+        if not isinstance(self.set, (str, os.PathLike)):
+            return _upglow.DyeSet.from_samples("custom", [dye._samples() for dye in self.set])
+        word = os.fspath(self.set)
+        if word in _upglow.DyeSet.names() or not is_path(Path(word)):
+            return _upglow.DyeSet.named(word)
+        return _upglow.DyeSet.from_folder(word)
+
+    def _native(self) -> _upglow.Model:
+        return _upglow.Model.dyes(
+            self._native_set(),
+            self.accounting,
+            self.mixing,
+            self.quantum_yield,
+            self.optical_density,
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Analytic:
+    """Fluorescence by formula: absorption and emission are cubic B-splines.
+
+    Parameters
+    ----------
+    absorption_fwhm_nm, emission_fwhm_nm
+        Full widths at half maximum, 15 to 80 nm.
+    accounting
+        What is conserved when light is given back: ``energy`` or ``photon``.
+    quantum_yield
+        Share of absorbed light that comes out, 0 to 1.
+    """
+
+    absorption_fwhm_nm: float = 50.0
+    emission_fwhm_nm: float = 45.0
+    accounting: str = "energy"
+    quantum_yield: float = 1.0
+
+    def _native(self) -> _upglow.Model:
+        return _upglow.Model.analytic(
+            self.absorption_fwhm_nm, self.emission_fwhm_nm, self.accounting, self.quantum_yield
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Reflectance:
+    """No fluorescence."""
+
+    def _native(self) -> _upglow.Model:
+        return _upglow.Model.reflectance()
+
+
+Model = Dyes | Analytic | Reflectance

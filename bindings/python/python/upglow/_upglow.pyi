@@ -1,0 +1,204 @@
+"""The native half of upglow; use the package itself."""
+
+import os
+from collections.abc import Callable, Sequence
+from typing import Any, Final, final
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = [
+    "Colors",
+    "Contract",
+    "Cube",
+    "DyeSet",
+    "Illuminant",
+    "Model",
+    "__version__",
+    "albedo",
+    "build",
+    "colors",
+    "corners",
+    "elastic_probability",
+    "first_outside",
+    "fit",
+    "pdf_per_nm",
+    "polish",
+    "reflectance",
+    "reradiation",
+    "reradiation_matrix",
+    "sample",
+    "standing",
+    "verify",
+]
+
+__version__: Final[str]
+
+_Doubles = NDArray[np.float64]
+_Singles = NDArray[np.float32]
+_Stored = tuple[_Singles, NDArray[np.uint8], _Singles]
+_Subjects = _Singles | _Doubles | _Stored
+_Materials = tuple[_Singles, NDArray[np.uint8], _Singles, _Singles]
+_Report = Callable[[str, int, int], Any]
+_Check = tuple[str, str, str, float, float | None, str, int, int, str | None]
+_Dye = tuple[str, list[float], list[float], list[float], float | None]
+
+@final
+class Illuminant:
+    @staticmethod
+    def names() -> list[str]: ...
+    @staticmethod
+    def named(name: str) -> Illuminant: ...
+    @staticmethod
+    def from_csv(name: str, text: str) -> Illuminant: ...
+    @staticmethod
+    def from_samples(
+        name: str, wavelengths_nm: Sequence[float], power: Sequence[float]
+    ) -> Illuminant: ...
+    @staticmethod
+    def line(name: str, peak_nm: float, fwhm_nm: float) -> Illuminant: ...
+    @staticmethod
+    def wavelengths_nm() -> _Doubles: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def power(self) -> _Doubles: ...
+
+@final
+class Contract:
+    def __new__(
+        cls, space: str | Sequence[float], illuminant: Illuminant, adaptation: str
+    ) -> Contract: ...
+    @staticmethod
+    def spaces() -> list[str]: ...
+    @property
+    def space(self) -> str: ...
+    @property
+    def primaries_xy(self) -> _Doubles: ...
+    @property
+    def white_xy(self) -> _Doubles: ...
+    @property
+    def illuminant(self) -> Illuminant: ...
+    @property
+    def observer(self) -> str: ...
+    @property
+    def adaptation(self) -> str: ...
+    @property
+    def white_xyz(self) -> _Doubles: ...
+    @property
+    def xyz_from_rgb(self) -> _Doubles: ...
+    @property
+    def rgb_from_xyz(self) -> _Doubles: ...
+
+@final
+class DyeSet:
+    @staticmethod
+    def names() -> list[str]: ...
+    @staticmethod
+    def named(name: str) -> DyeSet: ...
+    @staticmethod
+    def from_folder(path: str | os.PathLike[str]) -> DyeSet: ...
+    @staticmethod
+    def from_samples(name: str, dyes: Sequence[_Dye]) -> DyeSet: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def dyes(self) -> list[str]: ...
+
+@final
+class Model:
+    @staticmethod
+    def reflectance() -> Model: ...
+    @staticmethod
+    def analytic(
+        absorption_fwhm_nm: float, emission_fwhm_nm: float, accounting: str, quantum_yield: float
+    ) -> Model: ...
+    @staticmethod
+    def dyes(
+        set: DyeSet,
+        accounting: str,
+        mixing: str,
+        quantum_yield: float | str,
+        optical_density: float | None,
+    ) -> Model: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def without_published_yield(self) -> list[str]: ...
+
+@final
+class Cube:
+    @staticmethod
+    def read(path: str | os.PathLike[str]) -> Cube: ...
+    @staticmethod
+    def from_bytes(content: bytes) -> Cube: ...
+    def write(self, path: str | os.PathLike[str]) -> None: ...
+    def to_bytes(self) -> bytes: ...
+    def contract(self) -> Contract: ...
+    @property
+    def resolution(self) -> int: ...
+    def header_json(self) -> str: ...
+    def nodes(self) -> _Materials: ...
+    def dye_curves(self) -> _Doubles: ...
+    def summary(self) -> tuple[int, int, int, int, float, float, float, int]: ...
+
+@final
+class Colors:
+    def xyz(self, rgb: _Singles, threads: int | None) -> _Singles: ...
+    def rgb(self, rgb: _Singles, threads: int | None) -> _Singles: ...
+    def de2000(self, rgb: _Singles, threads: int | None) -> _Singles: ...
+
+def build(
+    contract: Contract,
+    model: Model,
+    resolution: int,
+    options: tuple[str, float | None, str, int | None],
+    threads: int | None,
+    report: _Report | None,
+) -> Cube: ...
+def fit(
+    cube: Cube, rgb: _Doubles, threads: int | None, report: _Report | None
+) -> _Materials: ...
+def polish(cube: Cube, rgb: _Singles, threads: int | None) -> _Materials: ...
+def corners(cube: Cube, rgb: _Doubles) -> tuple[NDArray[np.uintp], _Doubles]: ...
+def colors(
+    cube: Cube, light: Illuminant | None, scale: str, step_nm: int
+) -> Colors: ...
+def first_outside(rgb: _Singles | _Doubles, to_fit: bool) -> tuple[int, str] | None: ...
+def reflectance(
+    cube: Cube, of: _Subjects, wavelengths_nm: Sequence[float], threads: int | None
+) -> NDArray[Any]: ...
+def albedo(
+    cube: Cube, of: _Subjects, wavelengths_nm: Sequence[float], threads: int | None
+) -> NDArray[Any]: ...
+def reradiation(
+    cube: Cube, of: _Subjects, in_nm: _Doubles, out_nm: _Doubles, threads: int | None
+) -> NDArray[Any]: ...
+def reradiation_matrix(
+    cube: Cube, of: _Subjects, grid_nm: Sequence[int], threads: int | None
+) -> _Doubles: ...
+def sample(
+    cube: Cube, of: _Subjects, drawn: str, known_nm: _Doubles, u: _Doubles, threads: int | None
+) -> NDArray[Any]: ...
+def pdf_per_nm(
+    cube: Cube,
+    of: _Subjects,
+    drawn: str,
+    in_nm: _Doubles,
+    out_nm: _Doubles,
+    threads: int | None,
+) -> NDArray[Any]: ...
+def elastic_probability(
+    cube: Cube, of: _Subjects, drawn: str, known_nm: _Doubles, threads: int | None
+) -> NDArray[Any]: ...
+def standing(
+    contract: Contract, rgb: _Doubles, threads: int | None
+) -> tuple[NDArray[np.uint8], _Doubles, _Doubles]: ...
+def verify(
+    cube: Cube,
+    points: int,
+    interpolation: str,
+    seed: int,
+    threads: int | None,
+    report: _Report | None,
+) -> tuple[int, int, bool, list[_Check]]: ...

@@ -1,0 +1,58 @@
+"""The wavelengths of sums and tables."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _upglow
+
+FINE_NM: NDArray[np.float64] = _upglow.Illuminant.wavelengths_nm()
+"""300, 301 … 830 nm: every table is on these wavelengths."""
+FINE_NM.flags.writeable = False
+
+FIT_NM: NDArray[np.float64] = FINE_NM[::5]
+"""300, 305 … 830 nm: fits and colors are sums over these wavelengths."""
+
+
+def wavelength_list(wavelengths_nm: ArrayLike) -> NDArray[np.float64]:
+    """One wavelength or a list of them."""
+    nm = np.asarray(wavelengths_nm, dtype=np.float64)
+    if nm.ndim > 1:
+        raise ValueError(f"wavelengths_nm has shape {nm.shape}, expected (n,) or a number")
+    return nm
+
+
+def grid(wavelengths_nm: ArrayLike) -> list[int]:
+    """First, last and step of whole, equally spaced wavelengths."""
+    nm = np.asarray(wavelengths_nm, dtype=np.float64)
+    steps: NDArray[Any] = np.diff(nm) if nm.ndim == 1 and nm.size > 1 else np.zeros(1)
+    is_whole = bool(np.all(nm == np.floor(nm)) and nm.min(initial=0) >= 0)
+    if not is_whole or steps[0] <= 0 or np.any(steps != steps[0]):
+        raise ValueError(
+            f"wavelengths_nm is {np.array2string(nm, threshold=6)}, "
+            "expected whole nm that rise in equal steps"
+        )
+    return [int(nm[0]), int(nm[-1]), int(steps[0])]
+
+
+def samples(what: str, curve: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Wavelengths (nm) and values of a pair of arrays or of a ``colour.SpectralDistribution``."""
+    if hasattr(curve, "wavelengths") and hasattr(curve, "values"):
+        curve = (curve.wavelengths, curve.values)
+    try:
+        wavelengths_nm, values = curve
+    except (TypeError, ValueError):
+        raise TypeError(
+            f"{what} is {type(curve).__name__}, expected a pair (wavelengths_nm, values) or a "
+            "colour.SpectralDistribution"
+        ) from None
+    nm, value = (np.asarray(part, dtype=np.float64) for part in (wavelengths_nm, values))
+    if nm.ndim != 1 or value.shape != nm.shape:
+        raise ValueError(
+            f"{what}: wavelengths of shape {nm.shape} and values of shape {value.shape}, "
+            "expected both (n,)"
+        )
+    return nm, value

@@ -1,0 +1,134 @@
+//! Colors of arrays of RGB under a light.
+
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
+use pyo3::prelude::*;
+use rayon::prelude::*;
+use upglow::ColorTable;
+use upglow_color::{Colorimetry, Contract, Grid, LinearRgb, Metric, Xyz};
+
+use crate::cube::Cube;
+use crate::errors::value_error;
+use crate::illuminant::Illuminant;
+use crate::rows::{Number, fill, single_rows, to_single};
+use crate::threads::on_threads;
+
+/// The colors of a cube's materials under one light.
+#[pyclass(frozen, module = "upglow._upglow")]
+#[derive(Debug)]
+pub(crate) struct Colors {
+    table: ColorTable,
+    colorimetry: Colorimetry,
+}
+
+/// The colors of a cube's materials under `light`, or under its own; `scale` is `white` (white is
+/// Y = 1 under any light) or `power` (as much power as the cube's own light); sums are over 1 or
+/// 5 nm.
+#[pyfunction]
+#[pyo3(signature = (cube, light, scale, step_nm))]
+pub(crate) fn colors(
+    py: Python<'_>,
+    cube: &Cube,
+    light: Option<&Illuminant>,
+    scale: &str,
+    step_nm: u32,
+) -> PyResult<Colors> {
+    let grid = match step_nm {
+        1 => Grid::FINE,
+        5 => Grid::FIT,
+        _ => return Err(value_error(format_args!("step_nm is {step_nm}, expected 1 or 5"))),
+    };
+    let contract = cube.cube.contract();
+    let own = || contract.on(grid);
+    let colorimetry = match (light, scale) {
+        (None, "white" | "power") => own(),
+        (Some(light), "white") => {
+            Contract { illuminant: light.0.clone(), ..contract.clone() }.on(grid)
+        }
+        (Some(light), "power") => own().relit(&contract.observer, &light.0),
+        _ => return Err(value_error(format_args!("scale {scale:?}, expected white or power"))),
+    };
+    Ok(py.detach(|| Colors { table: cube.cube.color_table(&colorimetry), colorimetry }))
+}
+
+#[pymethods]
+impl Colors {
+    /// X, Y, Z of each RGB, `[color][X Y Z]`; not-a-number outside 0..=1.
+    fn xyz<'py>(
+        &self,
+        py: Python<'py>,
+        rgb: PyReadonlyArray2<'py, f32>,
+        threads: Option<usize>,
+    ) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        self.each(py, single_rows(&rgb)?, threads, |_| ())
+    }
+
+    /// Linear RGB under the light of each RGB, `[color][channel]`; not-a-number outside 0..=1.
+    fn rgb<'py>(
+        &self,
+        py: Python<'py>,
+        rgb: PyReadonlyArray2<'py, f32>,
+        threads: Option<usize>,
+    ) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        self.each(py, single_rows(&rgb)?, threads, |colors| {
+            for color in colors {
+                let LinearRgb(rgb) = self.colorimetry.rgb_from_xyz(Xyz(color.map(f64::from)));
+                *color = to_single(Xyz(rgb));
+            }
+        })
+    }
+
+    /// CIEDE2000 of the material of each RGB against the RGB itself.
+    fn de2000<'py>(
+        &self,
+        py: Python<'py>,
+        rgb: PyReadonlyArray2<'py, f32>,
+        threads: Option<usize>,
+    ) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        let rgb = single_rows(&rgb)?;
+        let shown = self.each(py, rgb, threads, |_| ())?;
+        let shown = shown.readonly();
+        let shown = single_rows(&shown)?;
+        let mut out = vec![0.0; rgb.len()];
+        let difference = |row: usize| {
+            let target = self.colorimetry.xyz_from_rgb(LinearRgb(rgb[row].map(f64::from)));
+            Metric::De2000.distance(&self.colorimetry, target, Xyz(shown[row].map(f64::from)))
+        };
+        py.detach(|| {
+            on_threads(threads, || {
+                fill(&mut out, 1, |row, out| out[0] = f32::from_double(difference(row)));
+            })
+        })?;
+        Ok(PyArray1::from_vec(py, out))
+    }
+}
+
+/// Colors that a thread works on at a time.
+const BATCH: usize = 16 * 1024;
+
+impl Colors {
+    fn each<'py>(
+        &self,
+        py: Python<'py>,
+        rgb: &[[f32; 3]],
+        threads: Option<usize>,
+        finish: impl Fn(&mut [[f32; 3]]) + Sync,
+    ) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let array = PyArray2::zeros(py, [rgb.len(), 3], false);
+        let mut writable = array.readwrite();
+        let (out, _) = writable.as_slice_mut()?.as_chunks_mut::<3>();
+        let batch = |(rgb, out): (&[[f32; 3]], &mut [[f32; 3]])| {
+            self.table.xyz(rgb, out)?;
+            finish(out);
+            Ok(())
+        };
+        let done = py.detach(|| {
+            on_threads(threads, || match rgb.len() {
+                0..=BATCH => batch((rgb, out)),
+                _ => rgb.par_chunks(BATCH).zip(out.par_chunks_mut(BATCH)).try_for_each(batch),
+            })
+        })?;
+        done.map_err(|error: upglow::LengthError| value_error(error))?;
+        drop(writable);
+        Ok(array)
+    }
+}

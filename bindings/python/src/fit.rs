@@ -1,0 +1,90 @@
+//! Cubes built and colors fitted.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use numpy::PyReadonlyArray2;
+use pyo3::prelude::*;
+use rayon::prelude::*;
+use upglow::Node;
+use upglow_color::LinearRgb;
+use upglow_fit::{FitOptions, Fitter, Method, Progress, Watch, build_cube};
+
+use crate::contract::Contract;
+use crate::cube::Cube;
+use crate::errors::value_error;
+use crate::materials::{Arrays, arrays};
+use crate::model::Model;
+use crate::rows::triples;
+use crate::threads::on_threads;
+use crate::watch::{Watcher, watched};
+
+/// Metric, slope limit (1/nm), method, sweeps as they are given.
+type Options = (String, Option<f64>, String, Option<u32>);
+
+fn options((metric, slope_max_per_nm, method, sweeps): Options) -> PyResult<FitOptions> {
+    let method: Method = method.parse().map_err(value_error)?;
+    Ok(FitOptions {
+        metric: metric.parse().map_err(value_error)?,
+        slope_max_per_nm,
+        sweeps: sweeps.unwrap_or(method.default_sweeps()),
+        method,
+    })
+}
+
+/// Fits a material for every node of a cube.
+#[pyfunction]
+#[pyo3(signature = (contract, model, resolution, options, threads, report))]
+pub(crate) fn build(
+    py: Python<'_>,
+    contract: &Contract,
+    model: &Model,
+    resolution: usize,
+    options: Options,
+    threads: Option<usize>,
+    report: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Cube> {
+    let options = self::options(options)?;
+    let built = watched(py, report, |watcher| {
+        on_threads(threads, || {
+            build_cube(&contract.contract, &model.0, options, resolution, watcher)
+        })
+    })??;
+    built.map(Cube::of).map_err(value_error)
+}
+
+/// Fits a material for each RGB, as the cube's nodes were fitted.
+#[pyfunction]
+#[pyo3(signature = (cube, rgb, threads, report))]
+pub(crate) fn fit<'py>(
+    py: Python<'py>,
+    cube: &Cube,
+    rgb: PyReadonlyArray2<'py, f64>,
+    threads: Option<usize>,
+    report: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Arrays<'py>> {
+    let record = cube.cube.fit().clone();
+    let options = (record.metric, record.slope_max_per_nm, record.method, Some(record.sweeps));
+    let options = self::options(options)?;
+    let rgb = triples(rgb.as_slice()?);
+    let fitted = watched(py, report, |watcher| {
+        let fitter = Fitter::new(cube.cube.contract(), cube.cube.model(), options);
+        let fitter = fitter.map_err(value_error)?;
+        on_threads(threads, || fit_each(&fitter, rgb, watcher))?
+    })??;
+    arrays(py, &fitted)
+}
+
+/// A material for each RGB; once the watcher has stopped, what is left is never looked at.
+fn fit_each(fitter: &Fitter, rgb: &[[f64; 3]], watcher: &Watcher) -> PyResult<Vec<Node>> {
+    let done = AtomicUsize::new(0);
+    let fit = |rgb: &[f64; 3]| {
+        if watcher.stopped() {
+            return Ok(Node::default());
+        }
+        let fit = fitter.fit(LinearRgb(*rgb)).map_err(value_error)?;
+        let done = 1 + done.fetch_add(1, Ordering::Relaxed);
+        watcher.progress(Progress { stage: "fitting", done, total: rgb.len() });
+        Ok(Node::new(fit.reflectance, fit.fluorescence, fit.de2000))
+    };
+    rgb.par_iter().map(fit).collect()
+}

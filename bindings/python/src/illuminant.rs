@@ -1,0 +1,99 @@
+//! Lights.
+
+use std::fmt::Write as _;
+
+use numpy::PyArray1;
+use pyo3::prelude::*;
+use upglow_color::Grid;
+
+use crate::errors::value_error;
+
+/// A named light: relative spectral power from 300 to 830 nm by 1 nm.
+#[pyclass(frozen, module = "upglow._upglow")]
+#[derive(Debug)]
+pub(crate) struct Illuminant(pub(crate) upglow_color::Illuminant);
+
+#[pymethods]
+impl Illuminant {
+    /// The names of the built-in lights.
+    #[staticmethod]
+    fn names() -> Vec<&'static str> {
+        upglow_color::Illuminant::NAMES.to_vec()
+    }
+
+    /// The built-in light of this name.
+    #[staticmethod]
+    fn named(name: &str) -> PyResult<Self> {
+        upglow_color::Illuminant::named(name).map(Self).map_err(value_error)
+    }
+
+    /// The light in CSV text with the header `wavelength_nm,power`.
+    #[staticmethod]
+    fn from_csv(name: &str, text: &str) -> PyResult<Self> {
+        upglow_color::Illuminant::from_csv(name, text).map(Self).map_err(value_error)
+    }
+
+    /// The light with these samples; wavelengths are nm.
+    #[staticmethod]
+    fn from_samples(name: &str, wavelengths_nm: Vec<f64>, power: Vec<f64>) -> PyResult<Self> {
+        let text = csv_text(["power"], &wavelengths_nm, [&power]);
+        upglow_color::Illuminant::from_csv(name, &text)
+            .map(Self)
+            .map_err(|error| value_error(format_args!("{name} as CSV: {error}")))
+    }
+
+    /// A light with one Gaussian line; wavelengths are nm.
+    #[staticmethod]
+    fn line(name: &str, peak_nm: f64, fwhm_nm: f64) -> PyResult<Self> {
+        if !peak_nm.is_finite() {
+            return Err(value_error(format_args!(
+                "peak_nm is {peak_nm}, expected a finite number"
+            )));
+        }
+        if !(fwhm_nm.is_finite() && fwhm_nm > 0.0) {
+            return Err(value_error(format_args!("fwhm_nm is {fwhm_nm}, expected > 0")));
+        }
+        let line = upglow_color::Illuminant::line(name, peak_nm, fwhm_nm);
+        let checked = upglow_color::Illuminant::from_spectrum(name, line.power());
+        checked.map(Self).map_err(value_error)
+    }
+
+    /// The name that files state.
+    #[getter]
+    fn name(&self) -> &str {
+        self.0.name()
+    }
+
+    /// Relative power at 300, 301 … 830 nm.
+    #[getter]
+    fn power<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, self.0.power().values())
+    }
+
+    /// The wavelengths of every table, 300, 301 … 830 nm.
+    #[staticmethod]
+    fn wavelengths_nm(py: Python<'_>) -> Bound<'_, PyArray1<f64>> {
+        PyArray1::from_iter(py, Grid::FINE.wavelengths_nm())
+    }
+}
+
+/// CSV text of samples: the way in that checks wavelengths, gaps and range. Not-a-number is an empty
+/// cell.
+pub(crate) fn csv_text<const N: usize>(
+    columns: [&str; N],
+    wavelengths_nm: &[f64],
+    samples: [&[f64]; N],
+) -> String {
+    let mut text = format!("wavelength_nm,{}", columns.join(","));
+    for (i, nm) in wavelengths_nm.iter().enumerate() {
+        // Writing to a string does not fail.
+        let _ = write!(text, "\n{nm}");
+        for column in samples {
+            let _ = match column.get(i) {
+                Some(value) if !value.is_nan() => write!(text, ",{value}"),
+                _ => write!(text, ","),
+            };
+        }
+    }
+    text
+}

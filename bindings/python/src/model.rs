@@ -1,0 +1,151 @@
+//! What fluoresces.
+
+use std::path::PathBuf;
+
+use pyo3::prelude::*;
+use upglow::{AnalyticModel, DyeModel, DyeOptions, DyeSetError, QuantumYield};
+use upglow_color::{MeasuredDye, dye_set_names, read_columns};
+
+use crate::errors::{os_error, value_error};
+use crate::illuminant::csv_text;
+
+/// A ring of measured dyes.
+#[pyclass(frozen, module = "upglow._upglow")]
+#[derive(Debug)]
+pub(crate) struct DyeSet(upglow::DyeSet);
+
+/// A dye as Python gives it: name, wavelengths (nm), absorption, emission, quantum yield.
+type Sampled = (String, Vec<f64>, Vec<f64>, Vec<f64>, Option<f64>);
+
+#[pymethods]
+impl DyeSet {
+    /// The names of the built-in sets.
+    #[staticmethod]
+    fn names() -> Vec<&'static str> {
+        dye_set_names().collect()
+    }
+
+    /// The built-in set of this name.
+    #[staticmethod]
+    fn named(name: &str) -> PyResult<Self> {
+        upglow::DyeSet::named(name).map(Self).map_err(|error| set_error(&error))
+    }
+
+    /// The dyes in a folder of CSV files.
+    #[staticmethod]
+    fn from_folder(path: PathBuf) -> PyResult<Self> {
+        upglow::DyeSet::from_folder(&path).map(Self).map_err(|error| set_error(&error))
+    }
+
+    /// A ring of sampled dyes, in their order.
+    #[staticmethod]
+    fn from_samples(name: &str, dyes: Vec<Sampled>) -> PyResult<Self> {
+        let dyes = dyes.into_iter().map(measured).collect::<PyResult<_>>()?;
+        upglow::DyeSet::new(name, dyes).map(Self).map_err(|error| set_error(&error))
+    }
+
+    /// The name that files state.
+    #[getter]
+    fn name(&self) -> &str {
+        self.0.name()
+    }
+
+    /// The dyes' names in ring order.
+    #[getter]
+    fn dyes(&self) -> Vec<String> {
+        self.0.dyes().iter().map(|dye| dye.name.clone()).collect()
+    }
+}
+
+fn measured((name, nm, absorption, emission, quantum_yield): Sampled) -> PyResult<MeasuredDye> {
+    let text = csv_text(["absorption", "emission"], &nm, [&absorption, &emission]);
+    let [absorption, emission] = read_columns(&text, ["absorption", "emission"], true)
+        .map_err(|error| value_error(format_args!("dye {name} as CSV: {error}")))?;
+    if let Some(found) = quantum_yield.filter(|q| !(0.0..=1.0).contains(q)) {
+        let expected = "expected 0 to 1";
+        return Err(value_error(format_args!("dye {name}: quantum yield {found}, {expected}")));
+    }
+    let provenance = "given in Python".to_owned();
+    Ok(MeasuredDye { name, absorption, emission, quantum_yield, provenance })
+}
+
+fn set_error(error: &DyeSetError) -> PyErr {
+    match error {
+        DyeSetError::Read { path, source } => os_error(path, source),
+        error => value_error(error),
+    }
+}
+
+/// How fluorescence is described, and by what rules it gives light back.
+#[pyclass(frozen, module = "upglow._upglow")]
+#[derive(Debug)]
+pub(crate) struct Model(pub(crate) upglow::Model);
+
+/// A quantum yield as it is given.
+#[derive(FromPyObject)]
+enum Yield {
+    Number(f64),
+    Word(String),
+}
+
+#[pymethods]
+impl Model {
+    /// No fluorescence.
+    #[staticmethod]
+    fn reflectance() -> Self {
+        Self(upglow::Model::Reflectance)
+    }
+
+    /// Absorption and emission by formula; widths are nm.
+    #[staticmethod]
+    fn analytic(
+        absorption_fwhm_nm: f64,
+        emission_fwhm_nm: f64,
+        accounting: &str,
+        quantum_yield: f64,
+    ) -> PyResult<Self> {
+        let accounting = accounting.parse().map_err(value_error)?;
+        AnalyticModel::new(absorption_fwhm_nm, emission_fwhm_nm, accounting, quantum_yield)
+            .map(|model| Self(upglow::Model::Analytic(model)))
+            .map_err(value_error)
+    }
+
+    /// Neighbors of a ring of measured dyes.
+    #[staticmethod]
+    fn dyes(
+        set: &DyeSet,
+        accounting: &str,
+        mixing: &str,
+        quantum_yield: Yield,
+        optical_density: Option<f64>,
+    ) -> PyResult<Self> {
+        let options = DyeOptions {
+            accounting: accounting.parse().map_err(value_error)?,
+            mixing: mixing.parse().map_err(value_error)?,
+            quantum_yield: match quantum_yield {
+                Yield::Number(q) => QuantumYield::Fixed(q),
+                Yield::Word(word) => word.parse().map_err(value_error)?,
+            },
+            optical_density,
+        };
+        let model = DyeModel::new(set.0.clone(), options).map_err(value_error)?;
+        Ok(Self(upglow::Model::Dyes(model)))
+    }
+
+    /// `reflectance`, `dyes` or `analytic`.
+    #[getter]
+    fn name(&self) -> &'static str {
+        self.0.name()
+    }
+
+    /// Dyes whose quantum yield nobody published; a measured yield counts as 1 for them.
+    #[getter]
+    fn without_published_yield(&self) -> Vec<String> {
+        match &self.0 {
+            upglow::Model::Dyes(model) => {
+                model.without_published_yield().into_iter().map(str::to_owned).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+}

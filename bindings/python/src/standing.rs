@@ -1,0 +1,48 @@
+//! Where colors stand: what kind of material can show them at all.
+
+use numpy::{PyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+use upglow_color::LinearRgb;
+use upglow_fit::{Estimate, StandingKind};
+
+use crate::contract::Contract;
+use crate::rows::{fill, triples};
+use crate::threads::on_threads;
+
+/// Kind, distance in XYZ and ΔE00 of each color.
+type Standings<'py> =
+    (Bound<'py, PyArray1<u8>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
+
+/// Where each RGB stands under a contract: 0, reflectances show it; 1, it needs fluorescence; 2,
+/// nothing shows it. And how far it is from what it is beyond, in XYZ and in ΔE00.
+#[pyfunction]
+#[pyo3(signature = (contract, rgb, threads))]
+pub(crate) fn standing<'py>(
+    py: Python<'py>,
+    contract: &Contract,
+    rgb: PyReadonlyArray2<'py, f64>,
+    threads: Option<usize>,
+) -> PyResult<Standings<'py>> {
+    let rgb = triples(rgb.as_slice()?);
+    let nowhere = Estimate { kind: StandingKind::Reflectance, distance: 0.0, de2000: 0.0 };
+    let mut found = vec![nowhere; rgb.len()];
+    py.detach(|| {
+        let table = contract.standing_table();
+        on_threads(threads, || {
+            fill(&mut found, 1, |row, out| out[0] = table.estimate(LinearRgb(rgb[row])));
+        })
+    })?;
+    Ok((
+        PyArray1::from_iter(py, found.iter().map(|e| number(e.kind))),
+        PyArray1::from_iter(py, found.iter().map(|e| e.distance)),
+        PyArray1::from_iter(py, found.iter().map(|e| e.de2000)),
+    ))
+}
+
+fn number(kind: StandingKind) -> u8 {
+    match kind {
+        StandingKind::Reflectance => 0,
+        StandingKind::NeedsFluorescence => 1,
+        StandingKind::Unreachable => 2,
+    }
+}

@@ -1,0 +1,57 @@
+//! What a cube promises, recomputed.
+
+use pyo3::prelude::*;
+use upglow_fit::{Check, Offender, VerifyOptions};
+
+use crate::cube::Cube;
+use crate::errors::value_error;
+use crate::threads::on_threads;
+use crate::watch::watched;
+
+/// Name, about, verdict, value, limit, unit, checked, violations and the worst found.
+type Row = (
+    &'static str,
+    &'static str,
+    String,
+    f64,
+    Option<f64>,
+    &'static str,
+    usize,
+    usize,
+    Option<String>,
+);
+
+/// Nodes, points, whether all laws hold, and every check.
+#[pyfunction]
+#[pyo3(signature = (cube, points, interpolation, seed, threads, report))]
+pub(crate) fn verify(
+    py: Python<'_>,
+    cube: &Cube,
+    points: usize,
+    interpolation: &str,
+    seed: u64,
+    threads: Option<usize>,
+    report: Option<&Bound<'_, PyAny>>,
+) -> PyResult<(usize, usize, bool, Vec<Row>)> {
+    let interpolation = interpolation.parse().map_err(value_error)?;
+    let options = VerifyOptions { points, interpolation, seed };
+    let found = watched(py, report, |watcher| {
+        on_threads(threads, || upglow_fit::verify(&cube.cube, &options, watcher))
+    })??;
+    let found = found.map_err(value_error)?;
+    Ok((found.nodes, found.points, found.holds(), found.checks.iter().map(row).collect()))
+}
+
+fn row(check: &Check) -> Row {
+    (
+        check.name,
+        check.about,
+        check.verdict.to_string(),
+        check.value,
+        check.limit,
+        check.unit,
+        check.checked,
+        check.violations,
+        check.worst.as_ref().map(Offender::to_string),
+    )
+}

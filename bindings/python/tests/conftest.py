@@ -1,0 +1,48 @@
+"""Cubes that the tests share: small ones, built once."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import upglow
+
+REPOSITORY = Path(__file__).resolve().parents[3]
+
+
+@pytest.fixture(scope="session")
+def cube() -> upglow.Cube:
+    """ACEScg under D65, the default dyes."""
+    return upglow.build(resolution=9)
+
+
+@pytest.fixture(
+    scope="session",
+    params=[
+        upglow.Dyes(),
+        upglow.Dyes(accounting="photon", mixing="separate", quantum_yield=0.8, optical_density=2),
+        upglow.Analytic(accounting="photon", quantum_yield=0.9),
+        upglow.Reflectance(),
+    ],
+    ids=["pooled", "separate", "analytic", "reflectance"],
+)
+def any_cube(request: pytest.FixtureRequest) -> upglow.Cube:
+    """A cube of each kind of model."""
+    return upglow.build(model=request.param, resolution=5)
+
+
+@pytest.fixture
+def rng() -> np.random.Generator:
+    return np.random.default_rng(20260101)
+
+
+@pytest.fixture(scope="session")
+def program() -> str:
+    """The program `upglow`, which `cargo xtask check` builds and names."""
+    path = os.environ.get("UPGLOW_PROGRAM")
+    if path is None:
+        pytest.skip("UPGLOW_PROGRAM names no program `upglow`")
+    return path

@@ -1,0 +1,98 @@
+"""The same colors by colour-science, an implementation that nobody here wrote."""
+
+from __future__ import annotations
+
+import sys
+import warnings
+
+import numpy as np
+import pytest
+
+import upglow
+
+with warnings.catch_warnings():
+    # It says which of its optional packages are missing.
+    warnings.simplefilter("ignore")
+    import colour
+
+# Single precision here; chromaticities of whites, and powers of D65, to their printed digits.
+COLOR = 1e-4
+# Sums over 5 nm against sums over 1 nm.
+GRID = 5e-4
+COLORS = np.array(
+    [[0.9, 0.1, 0.8], [0.5, 0.5, 0.5], [0.2, 0.7, 0.1], [1.0, 1.0, 1.0], [0.9, 0.45, 0.05]]
+)
+
+
+def integrated(sd: colour.SpectralDistribution, light: np.ndarray) -> np.ndarray:
+    """XYZ of a spectrum under a light, both over 1 nm; the eye begins at 360 nm."""
+    shape = colour.SpectralShape(360, 830, 1)
+    observer = colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"].copy().align(shape)
+    illuminant = colour.SpectralDistribution(light, upglow.FINE_NM).align(shape)
+    with warnings.catch_warnings():
+        # It says that it aligns the light with the observer.
+        warnings.simplefilter("ignore")
+        return colour.sd_to_XYZ(sd.copy().align(shape), observer, illuminant) / 100.0
+
+
+@pytest.mark.parametrize("name", ["D65", "A", "E", "D50"])
+@pytest.mark.parametrize("rgb", COLORS)
+def test_spectra_integrate_to_the_same_color(cube, rgb, name) -> None:
+    light = upglow.Illuminant(name)
+    sd = cube.spectral_distribution(rgb, upglow.FINE_NM, light=light)
+    assert isinstance(sd, colour.SpectralDistribution)
+    expected = integrated(sd, light.power)
+    assert np.abs(cube.xyz(rgb, light=light, step_nm=1) - expected).max() < COLOR
+
+
+def test_sums_over_5_nm_are_near_sums_over_1_nm(cube) -> None:
+    assert np.abs(cube.xyz(COLORS) - cube.xyz(COLORS, step_nm=1)).max() < GRID
+
+
+def test_d65_is_colour_sciences() -> None:
+    theirs = colour.SDS_ILLUMINANTS["D65"]
+    ours = np.interp(theirs.wavelengths, upglow.FINE_NM, upglow.Illuminant("D65").power)
+    # Powers up to 118 in six printed digits, one of them rounded otherwise.
+    assert np.abs(theirs.values - ours).max() < 1e-3
+
+
+def test_the_contract_is_colour_sciences(cube) -> None:
+    space = colour.RGB_COLOURSPACES["ACEScg"]
+    assert np.allclose(cube.contract.primaries_xy, space.primaries)
+    assert np.allclose(cube.contract.white_xy, space.whitepoint, atol=1e-5)
+    expected = colour.RGB_to_XYZ(
+        COLORS, space, illuminant=cube.contract.white_xyz[:2] / cube.contract.white_xyz.sum(),
+        chromatic_adaptation_transform="Bradford", apply_cctf_decoding=False,
+    )
+    # Chromaticities of the white to the digits that they are printed with.
+    assert np.abs(COLORS @ cube.contract.xyz_from_rgb.T - expected).max() < COLOR
+
+
+def test_its_lights_are_taken_once_they_cover_the_range(cube) -> None:
+    light = colour.SDS_ILLUMINANTS["D65"]
+    with pytest.raises(ValueError, match="D65 as CSV: covers 300 to 780 nm, expected at least"):
+        upglow.Contract(illuminant=light)
+    longer = light.copy().extrapolate(colour.SpectralShape(300, 830, 5))
+    assert upglow.Illuminant(longer).name == longer.name
+    assert np.abs(cube.xyz(COLORS, light=longer) - cube.xyz(COLORS)).max() < COLOR
+
+
+def test_its_spectra_are_taken_as_dyes() -> None:
+    nm = np.arange(300.0, 831.0)
+    bell = lambda center: np.exp(-(((nm - center) / 25) ** 2))  # noqa: E731
+    sd = lambda center: colour.SpectralDistribution(bell(center), nm)  # noqa: E731
+    dye = upglow.Dye(name="x", absorption=sd(500.0), emission=sd(540.0), quantum_yield=0.9)
+    cube = upglow.build(model=upglow.Dyes(set=[dye], quantum_yield="measured"), resolution=2)
+    assert cube.dye_names == ["x"]
+    assert np.allclose(cube.dye_curves[0, 0], bell(500.0))
+
+
+def test_one_color_a_spectrum(cube) -> None:
+    with pytest.raises(ValueError, match=r"rgb has shape \(5, 3\), expected \(3,\)"):
+        cube.spectral_distribution(COLORS)
+
+
+def test_without_colour_science_the_package_is_named(cube, monkeypatch) -> None:
+    monkeypatch.setitem(sys.modules, "colour", None)
+    with pytest.raises(ImportError, match="needs the package colour-science"):
+        cube.spectral_distribution(COLORS[0])

@@ -1,0 +1,98 @@
+"""The package and the program `upglow` give the same numbers."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import upglow
+
+# The program prints doubles in full; colors come in single precision here.
+ROUNDING = 1e-12
+SINGLE = 1e-6
+COLORS = [(0.9, 0.1, 0.8), (0.5, 0.5, 0.5), (0.2, 0.7, 0.1), (0.0, 1.0, 0.0), (0.13, 0.57, 0.91)]
+
+
+@pytest.fixture(scope="module")
+def file(program: str, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("cubes") / "cube.safetensors"
+    run(program, "build", "--resolution", "5", "--output", str(path))
+    return path
+
+
+def run(program: str, *args: str) -> dict:
+    done = subprocess.run(
+        [program, "--json", "--quiet", *args], check=True, capture_output=True, text=True
+    )
+    return json.loads(done.stdout)
+
+
+def test_both_build_the_same_bytes(file: Path) -> None:
+    assert upglow.build(resolution=5).to_bytes() == file.read_bytes()
+
+
+@pytest.mark.parametrize("rgb", COLORS)
+def test_both_show_the_same_material(program: str, file: Path, rgb) -> None:
+    cube = upglow.Cube.read(file)
+    told = run(program, "color", str(file), *map(str, rgb))
+    curves = told["curves"]
+    reflectance = cube.reflectance(rgb, curves["wavelengths_nm"])
+    assert np.abs(reflectance - curves["reflectance"]).max() < ROUNDING
+    assert np.abs(cube.contract.xyz_from_rgb @ rgb - told["xyz"]).max() < ROUNDING
+    check = cube.check(rgb)
+    # Rounding of the color to single precision, in units of ΔE00.
+    assert abs(check.de2000 - told["de2000"]) < 1e-4
+    kinds = {"reflectance": 0, "needs_fluorescence": 1, "unreachable": 2}
+    assert check.kind == kinds[told["standing"]["kind"]]
+    weights = np.array([part["weight"] for part in told["parts"]])
+    ours = cube.corners(rgb).weights
+    assert np.allclose(ours[ours > 0], weights, atol=ROUNDING)
+
+
+@pytest.mark.parametrize("rgb", COLORS)
+def test_both_see_the_same_under_every_light(program: str, file: Path, rgb) -> None:
+    cube = upglow.Cube.read(file)
+    for light in run(program, "color", str(file), *map(str, rgb))["lights"]:
+        is_lamp = light["name"] == "365 nm lamp"
+        lamp = upglow.Illuminant.line(365.0, 12.0) if is_lamp else light["name"]
+        scale = "power" if is_lamp else "white"
+        xyz = cube.xyz(rgb, light=lamp, scale=scale)
+        assert np.abs(xyz - light["xyz"]).max() < SINGLE, light["name"]
+        found = cube.rgb_under(rgb, lamp, scale=scale)
+        assert np.abs(found - light["rgb"]).max() < 4 * SINGLE, light["name"]
+
+
+def test_both_fit_the_same_material(program: str, file: Path) -> None:
+    cube = upglow.Cube.read(file)
+    told = run(program, "color", str(file), "0.9", "0.1", "0.8", "--direct")
+    fit = cube.fit([0.9, 0.1, 0.8])
+    curves = told["curves"]
+    # The package's materials are stored in single precision.
+    found = cube.reflectance(fit, curves["wavelengths_nm"])
+    assert np.abs(found - curves["reflectance"]).max() < 1e-5
+    assert abs(fit.de2000 - told["de2000"]) < 1e-4
+
+
+def test_both_verify_alike(program: str, file: Path) -> None:
+    told = run(program, "verify", str(file), "--points", "2000", "--seed", "3")
+    report = upglow.Cube.read(file).verify(points=2000, seed=3)
+    assert report.holds == told["holds"]
+    for ours, theirs in zip(report.checks, told["checks"], strict=True):
+        assert (ours.name, ours.verdict, ours.checked) == (
+            theirs["name"], theirs["verdict"], theirs["checked"],
+        )
+        assert ours.value == pytest.approx(theirs["value"], rel=1e-12, nan_ok=True)
+
+
+def test_both_refuse_in_the_same_words(program: str, file: Path) -> None:
+    done = subprocess.run(
+        [program, "build", "--resolution", "2", "--output", "x", "--slope-max-per-nm", "1"],
+        capture_output=True, text=True, check=False,
+    )
+    with pytest.raises(ValueError) as refused:
+        upglow.build(resolution=2, slope_max_per_nm=1.0)
+    assert str(refused.value) in done.stderr

@@ -1,0 +1,97 @@
+//! The Python package `upglow`: its wheel is built as users build it, installed, and tested.
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use crate::check::{Outcome, Step, StepError, output_of, release_bin_dir};
+use crate::python::{self, Python};
+
+/// Where the package lies.
+const PACKAGE: &str = "bindings/python";
+
+/// Tests compare the package with this program, and skip by name where there is none.
+const PROGRAM_VARIABLE: &str = "UPGLOW_PROGRAM";
+
+/// What `cargo xtask check` does about the package.
+pub(crate) const STEPS: [(&str, Step); 1] = [("Python package", run)];
+
+fn run(root: &Path) -> Result<Outcome, StepError> {
+    let path = root.join("target/python");
+    match python::prepare(root).map_err(|source| StepError::File { path, source })? {
+        Python::Ready(interpreter) => {
+            println!("{}", test(root, &interpreter)?);
+            Ok(Outcome::Passed)
+        }
+        Python::Missing(reason) => Ok(Outcome::Skipped(reason)),
+    }
+}
+
+/// Builds the wheel into the environment of `interpreter`, which has all that
+/// `requirements-test.txt` lists, and runs its tests against a program built like it. Nothing is
+/// fetched. Returns what pytest says of them: why some were skipped, and how many passed.
+pub(crate) fn test(root: &Path, interpreter: &Path) -> Result<String, StepError> {
+    let programs = release_bin_dir(root)?;
+    output_of(install(root, interpreter))?;
+    let mut tests = python(root, interpreter);
+    tests.args(["-m", "pytest", "-q", "-p", "no:cacheprovider"]);
+    let program = format!("upglow{}", std::env::consts::EXE_SUFFIX);
+    tests.env(PROGRAM_VARIABLE, programs.join(program));
+    output_of(tests).map(|told| summary(&told).to_owned())
+}
+
+/// What users type, but offline and with the build tools that are there.
+fn install(root: &Path, interpreter: &Path) -> Command {
+    let mut command = python(root, interpreter);
+    command.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-index"]);
+    command.args(["--no-deps", "--no-build-isolation", "--force-reinstall"]);
+    command.arg(root.join(PACKAGE)).env("CARGO_NET_OFFLINE", "true");
+    command
+}
+
+/// Python in the package's folder, with the commands of its environment. It leaves no files there.
+fn python(root: &Path, interpreter: &Path) -> Command {
+    let mut paths: Vec<_> = interpreter.parent().map(Path::to_owned).into_iter().collect();
+    let inherited = std::env::var_os("PATH").unwrap_or_default();
+    paths.extend(std::env::split_paths(&inherited));
+    let path = std::env::join_paths(paths).unwrap_or(inherited);
+    let mut command = Command::new(interpreter);
+    command.current_dir(root.join(PACKAGE)).stdin(Stdio::null());
+    command.env("PATH", path).env("PYTHONDONTWRITEBYTECODE", "1");
+    command
+}
+
+/// pytest's last lines: those about skipped tests, where there are any, and the counts.
+fn summary(told: &str) -> &str {
+    let told = told.trim_end();
+    let start = told.find("== short test summary").or_else(|| told.rfind('\n'));
+    let start = start.and_then(|at| told[at..].find('\n').map(|end| at + end + 1));
+    &told[start.unwrap_or_default()..]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_pytest_says_last_is_told() {
+        assert_eq!(summary("..  [100%]\n2 passed in 0.1s\n"), "2 passed in 0.1s");
+        let skips = "SKIPPED [1] tests/test_x.py:4: no program\n1 passed, 1 skipped in 0.1s";
+        let told = format!(".s  [100%]\n=== short test summary info ===\n{skips}\n");
+        assert_eq!(summary(&told), skips);
+        assert_eq!(summary(""), "");
+    }
+
+    #[test]
+    fn an_interpreter_that_is_not_there_is_named() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
+        let error = output_of(install(root, Path::new("/no/such/python"))).unwrap_err();
+        assert!(error.to_string().starts_with("$ python -m pip install"), "{error}");
+    }
+
+    #[test]
+    fn the_commands_of_the_environment_come_first() {
+        let command = python(Path::new("."), Path::new("/environment/bin/python"));
+        let path = command.get_envs().find(|(name, _)| *name == "PATH").unwrap().1.unwrap();
+        assert!(path.to_string_lossy().starts_with("/environment/bin"), "{path:?}");
+    }
+}
