@@ -5,9 +5,10 @@ use serde_json::Value;
 /// Each crate of the workspace, and the crates of the workspace that it may depend on.
 ///
 /// Development dependencies count as well: a test that needs an upper layer belongs there.
-const ALLOWED: [(&str, &[&str]); 9] = [
+const ALLOWED: [(&str, &[&str]); 10] = [
     ("upglow-color", &[]),
     ("upglow", &["upglow-color"]),
+    ("upglow-shader", &["upglow", "upglow-color"]),
     ("upglow-fit", &["upglow", "upglow-color"]),
     ("upglow-image", &["upglow-fit", "upglow", "upglow-color"]),
     ("upglow-study", &["upglow-fit", "upglow", "upglow-color"]),

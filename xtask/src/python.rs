@@ -9,9 +9,10 @@ use std::process::{Command, Stdio};
 pub(crate) const VARIABLE: &str = "UPGLOW_PYTHON";
 
 /// The lists of packages that tests need, with pinned versions.
-const REQUIREMENTS: [&str; 2] = [
+const REQUIREMENTS: [&str; 3] = [
     "bindings/python/requirements-test.txt",
     "crates/upglow-image/tests/readers/requirements.txt",
+    "crates/upglow-shader/tests/drivers/requirements.txt",
 ];
 
 /// Whether tests have their Python.

@@ -10,6 +10,7 @@ use clap::{Parser, Subcommand};
 use upglow::{Accounting, CoefficientTable, Cube, Interpolation, Mixing, QuantumYield};
 use upglow_color::{Adaptation, Metric};
 use upglow_fit::Method;
+use upglow_shader::Language;
 use upglow_study::Display;
 
 pub(crate) use pictures::{
@@ -41,7 +42,7 @@ pub(crate) enum Command {
     Verify(VerifyArgs),
     /// Show the material of one color
     Color(ColorArgs),
-    /// Write a cube for other programs: CSV, or a table of coefficients that renderers read
+    /// Write a cube for other programs: CSV, a table of coefficients, or shaders
     Export(ExportArgs),
     /// Turn pictures into spectral materials: EXR, TIFF or PNG in, EXR out
     Bake(Box<BakeArgs>),
@@ -222,7 +223,8 @@ pub(crate) struct ExportArgs {
     pub(crate) file: PathBuf,
     /// File to write
     pub(crate) output: PathBuf,
-    /// csv (every node a line) or coeff (reflectances only, for Mitsuba 3, pbrt-v4, colour-science)
+    /// csv (every node a line), coeff (reflectances only, for Mitsuba 3, pbrt-v4, colour-science), or
+    /// wgsl, glsl, hlsl or osl (functions, with their textures beside them)
     /// [default: as the output is named]
     #[arg(long, value_name = "NAME")]
     pub(crate) format: Option<ExportFormat>,
@@ -239,16 +241,25 @@ pub(crate) struct ExportArgs {
 pub(crate) enum ExportFormat {
     Csv,
     Coeff,
+    Shader(Language),
 }
 
 impl ExportFormat {
-    pub(crate) const ALL: [Self; 2] = [Self::Csv, Self::Coeff];
+    pub(crate) const ALL: [Self; 6] = [
+        Self::Csv,
+        Self::Coeff,
+        Self::Shader(Language::Wgsl),
+        Self::Shader(Language::Glsl),
+        Self::Shader(Language::Hlsl),
+        Self::Shader(Language::Osl),
+    ];
 
     /// The word that is typed, and the suffix of the files.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Csv => "csv",
             Self::Coeff => "coeff",
+            Self::Shader(language) => language.name(),
         }
     }
 }

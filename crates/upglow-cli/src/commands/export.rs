@@ -1,10 +1,12 @@
 //! `upglow export`: a cube for other programs.
 
 use std::fmt::Write as _;
+use std::path::PathBuf;
 
 use serde::Serialize;
 use upglow::{Cube, Model, Node, Vertex};
 use upglow_fit::{BuildError, fit_coefficients};
+use upglow_shader::{Language, Shader, ShaderError};
 
 use super::on_threads;
 use crate::args::{ExportArgs, ExportFormat};
@@ -22,6 +24,8 @@ struct ExportReport {
     format: &'static str,
     bytes: u64,
     nodes: usize,
+    /// Files that the exported one needs beside it.
+    textures: Vec<String>,
 }
 
 pub(crate) fn run(args: &ExportArgs, format: Format, quiet: bool) -> Result<(), Failure> {
@@ -29,9 +33,15 @@ pub(crate) fn run(args: &ExportArgs, format: Format, quiet: bool) -> Result<(), 
     files::check_output(&args.output)?;
     files::check_distinct(&args.file, &args.output)?;
     let cube = files::read_cube(&args.file)?;
+    let mut textures = Vec::new();
     let (bytes, nodes) = match kind {
         ExportFormat::Csv => (csv(&cube).into_bytes(), cube.nodes().len()),
         ExportFormat::Coeff => coeff(args, &cube, quiet)?,
+        ExportFormat::Shader(language) => {
+            let (source, written) = shader(args, &cube, language)?;
+            textures = written;
+            (source, cube.nodes().len())
+        }
     };
     files::write(&args.output, &bytes)?;
     format.print(&ExportReport {
@@ -39,7 +49,33 @@ pub(crate) fn run(args: &ExportArgs, format: Format, quiet: bool) -> Result<(), 
         format: kind.name(),
         bytes: bytes.len() as u64,
         nodes,
+        textures,
     })
+}
+
+/// The source of a shader, and the files of its textures, which are written first: a source stands
+/// nowhere without them.
+fn shader(
+    args: &ExportArgs,
+    cube: &Cube,
+    language: Language,
+) -> Result<(Vec<u8>, Vec<String>), Failure> {
+    let stem = args.output.file_stem().unwrap_or_default().to_string_lossy();
+    let shader = Shader::new(cube, language, &stem).map_err(|error| match error {
+        ShaderError::Name { .. } => Failure::file(&args.output, error),
+        error => Failure::file(&args.file, error),
+    })?;
+    let paths: Vec<PathBuf> =
+        shader.payload.iter().map(|file| args.output.with_file_name(&file.name)).collect();
+    for path in &paths {
+        files::check_output(path)?;
+        files::check_distinct(&args.file, path)?;
+    }
+    for (path, file) in paths.iter().zip(&shader.payload) {
+        files::write(path, &file.bytes)?;
+    }
+    let names = paths.iter().map(|path| path.display().to_string()).collect();
+    Ok((shader.source.into_bytes(), names))
 }
 
 /// The format that was named, or that the output's suffix names.
@@ -47,8 +83,10 @@ fn kind(args: &ExportArgs) -> Result<ExportFormat, Failure> {
     let suffix = args.output.extension().and_then(|suffix| suffix.to_str()).unwrap_or_default();
     let by_suffix = ExportFormat::ALL.into_iter().find(|format| format.name() == suffix);
     let kind = args.format.or(by_suffix).ok_or_else(|| {
-        let expected = "expected csv or coeff, or an output that ends so";
-        Failure::option("--format", format_args!("not given, {expected}"))
+        let names: Vec<&str> = ExportFormat::ALL.iter().map(|format| format.name()).collect();
+        let names = names.join(", ");
+        let expected = "or an output that ends so";
+        Failure::option("--format", format_args!("not given, expected one of {names}, {expected}"))
     })?;
     if kind != ExportFormat::Coeff && args.resolution.is_some() {
         let found = kind.name();
@@ -142,6 +180,9 @@ impl Report for ExportReport {
             .add("format", self.format)
             .add("nodes", self.nodes)
             .add("file", format_args!("{}, {}", self.file, files::size(self.bytes)));
+        for texture in &self.textures {
+            lines.add("textures", texture);
+        }
         lines.to_string()
     }
 }

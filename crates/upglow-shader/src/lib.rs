@@ -1,0 +1,34 @@
+//! Cubes for shaders: textures, and functions that look materials up, evaluate and sample them.
+//!
+//! [`Shader::new`] turns a [`upglow::Cube`] into source text in a [`Language`] and the files that
+//! the text reads its numbers from. What the functions are called and mean, and how to load the
+//! files, is in `docs/shaders.md`.
+//!
+//! # Examples
+//!
+//! ```
+//! use upglow::{Cube, Edge, FitRecord, Fluorescence, Model, Node};
+//! use upglow_color::Contract;
+//! use upglow_shader::{Language, Shader};
+//!
+//! let gray = Edge { edge_nm: 550.0, level: 0.0, slope_per_nm: 0.0 };
+//! let nodes = vec![Node::new(gray, Fluorescence::None, 0.0); 8];
+//! let cube = Cube::new(Contract::default(), Model::Reflectance, FitRecord::default(), 2, nodes)?;
+//! let shader = Shader::new(&cube, Language::Wgsl, "gray")?;
+//! assert!(shader.source.contains("fn upglow_look_up(rgb: vec3f) -> UpglowMaterial {"));
+//! assert_eq!(shader.payload[0].name, "gray.textures");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Out of scope: reading or writing files, talking to a driver, how surfaces scatter over angles.
+
+mod language;
+mod payload;
+mod shader;
+mod template;
+mod textures;
+mod tiff;
+mod translation;
+
+pub use language::Language;
+pub use shader::{PayloadFile, Shader, ShaderError};

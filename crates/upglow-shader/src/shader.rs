@@ -1,0 +1,372 @@
+//! A cube as source text and the files it reads.
+
+use std::fmt::Write as _;
+
+use upglow::{Accounting, AnalyticModel, Cube, Model};
+use upglow_color::Grid;
+
+use crate::Language;
+use crate::payload::{checksum, payload};
+use crate::template::functions;
+use crate::textures::{BINS, Texture, curves, nodes};
+use crate::tiff::tiff;
+use crate::translation::translate;
+
+/// A cube for a shader: source text, and the files that it reads its numbers from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shader {
+    /// The functions, in the language asked for. Every name begins with `upglow_`, `Upglow` or
+    /// `UPGLOW_`.
+    pub source: String,
+    /// The files to keep beside the source: one of both textures, or for OSL one of each.
+    pub payload: Vec<PayloadFile>,
+}
+
+/// A file that a shader's numbers are in; `docs/shaders.md` describes it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PayloadFile {
+    /// The file's name, without a folder: `name.textures`, or `name.nodes.tif` and
+    /// `name.curves.tif` for OSL.
+    pub name: String,
+    /// What is in it.
+    pub bytes: Vec<u8>,
+}
+
+/// Why a cube makes no shader.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ShaderError {
+    /// A texture of this many nodes has more rows than drivers take.
+    #[error("resolution {found}, expected at most {most}: textures have up to 8192 rows")]
+    Resolution {
+        /// The cube's nodes along an axis.
+        found: usize,
+        /// Most that fit.
+        most: usize,
+    },
+    /// The name cannot stand in a file's name or a line of source text.
+    #[error("name {found:?}, expected letters, digits, '.', '-' or '_'")]
+    Name {
+        /// The name given.
+        found: String,
+    },
+}
+
+/// Wavelengths beyond are those of the end, nm: farther out, parabolas overflow.
+const FARTHEST_NM: f32 = 1e4;
+/// The greatest number below 1 of those that drivers with one bit less than single precision tell
+/// from it. A draw of 1 itself could fall beyond the last wavelength that carries anything.
+const BELOW_ONE: f32 = 1.0 - f32::EPSILON;
+/// Smallest divisor: below what any area or density is that something is drawn from, above what
+/// drivers flush to zero.
+const TINY: f32 = 1e-30;
+/// Halvings that find one bin among all.
+const HALVINGS: u32 = BINS.ilog2() + 1;
+/// The start errs by 0.02, and each step squares the error: the third is below single precision.
+const NEWTON_STEPS: u32 = 3;
+/// Newton's steps to a quantile in single precision, from a start that errs by less than a tenth of
+/// the bell. With fewer, draws in the bell's tails, where some steps are halvings, fall short.
+const BRACKETED_STEPS: u32 = 12;
+
+impl Shader {
+    /// The shader of a cube; its files are called `name` with a suffix.
+    ///
+    /// # Errors
+    ///
+    /// [`ShaderError`] if the cube has more than 90 nodes along an axis, or `name` is not made of
+    /// letters, digits, `.`, `-` and `_`.
+    pub fn new(cube: &Cube, language: Language, name: &str) -> Result<Self, ShaderError> {
+        let is_plain = |c: char| c.is_alphanumeric() || ['.', '-', '_'].contains(&c);
+        if name.is_empty() || !name.chars().all(is_plain) {
+            return Err(ShaderError::Name { found: name.into() });
+        }
+        let nodes = nodes(cube)?;
+        let curves = match cube.model() {
+            Model::Dyes(dyes) => Some(curves(dyes)),
+            Model::Reflectance | Model::Analytic(_) => None,
+        };
+        let payload = payload_files(cube, language, name, &nodes, curves.as_ref());
+        let mut source = heading(cube, language, &payload, checksum(&nodes, curves.as_ref()));
+        source += &translate(&constants(cube), language);
+        source += &fetches(language, name, &nodes, curves.as_ref());
+        source += &translate(&functions(cube.model(), language), language);
+        Ok(Self { source, payload })
+    }
+}
+
+fn payload_files(
+    cube: &Cube,
+    language: Language,
+    name: &str,
+    nodes: &Texture,
+    curves: Option<&Texture>,
+) -> Vec<PayloadFile> {
+    let file = |suffix: &str, bytes| PayloadFile { name: format!("{name}.{suffix}"), bytes };
+    if language != Language::Osl {
+        return vec![file("textures", payload(cube.resolution(), nodes, curves))];
+    }
+    let mut files = vec![file("nodes.tif", tiff(nodes))];
+    files.extend(curves.map(|curves| file("curves.tif", tiff(curves))));
+    files
+}
+
+/// What made the text, from what, and how to bind it.
+fn heading(cube: &Cube, language: Language, payload: &[PayloadFile], checksum: u64) -> String {
+    let contract = cube.contract();
+    let names: Vec<&str> = payload.iter().map(|file| file.name.as_str()).collect();
+    let mut text = String::new();
+    let mut line = |words: &str| {
+        // Writing to a string does not fail.
+        let _ = writeln!(text, "{}", format!("// {words}").trim_end());
+    };
+    line(&format!("Made by upglow {}; do not edit.", env!("CARGO_PKG_VERSION")));
+    line("SPDX-License-Identifier: MIT OR Apache-2.0");
+    line("");
+    line(&format!("Spectral materials for linear {} colors.", contract.space.name()));
+    line(&format!(
+        "{} nodes an axis, model {}, light {}, observer {}.",
+        cube.resolution(),
+        cube.model().name(),
+        contract.illuminant.name(),
+        contract.observer.name()
+    ));
+    line(&format!("Reads {}; checksum {checksum:016x}.", names.join(", ")));
+    binding(language, matches!(cube.model(), Model::Dyes(_))).lines().for_each(line);
+    text.push('\n');
+    text
+}
+
+/// How to bind the textures.
+fn binding(language: Language, has_curves: bool) -> String {
+    let textures = if has_curves { "upglow_nodes and upglow_curves" } else { "upglow_nodes" };
+    let verb = if has_curves { "are textures" } else { "is a texture" };
+    match language {
+        Language::Wgsl => format!(
+            "{textures} {verb} of rgba32float; bind to group 0 from binding 0 on,\n\
+             or change the numbers in the attributes."
+        ),
+        Language::Glsl => format!(
+            "{textures} {verb} of RGBA32F; from binding 0 on, or as\n\
+             UPGLOW_NODES_LAYOUT and UPGLOW_CURVES_LAYOUT say if defined before.\n\
+             UPGLOW_SAMPLER can name another type that texelFetch takes."
+        ),
+        Language::Hlsl => format!(
+            "{textures} {verb} of R32G32B32A32_FLOAT; registers t0 on, or\n\
+             UPGLOW_NODES_REGISTER and UPGLOW_CURVES_REGISTER if defined before."
+        ),
+        Language::Osl => "The files are found along the renderer's path for textures, or as\n\
+                          UPGLOW_NODES and UPGLOW_CURVES say if defined before."
+            .into(),
+    }
+}
+
+/// The numbers of this cube that stand in the text, in the templates' dialect.
+fn constants(cube: &Cube) -> String {
+    let mut text = String::new();
+    let mut number = |name: &str, kind: &str, value: &str| {
+        // Writing to a string does not fail.
+        let _ = writeln!(text, "const UPGLOW_{name}: {kind} = {value};");
+    };
+    number("RESOLUTION", "i32", &cube.resolution().to_string());
+    number("FARTHEST_NM", "f32", &float(FARTHEST_NM));
+    if *cube.model() != Model::Reflectance {
+        number("BELOW_ONE", "f32", &float(BELOW_ONE));
+        number("TINY", "f32", &float(TINY));
+    }
+    match cube.model() {
+        Model::Reflectance => {}
+        Model::Dyes(dyes) => {
+            number("DYES", "i32", &dyes.curves().len().to_string());
+            number("FIRST_NM", "f32", &format!("{}.0", Grid::FINE.first_nm()));
+            number("BINS", "i32", &BINS.to_string());
+            number("HALVINGS", "i32", &HALVINGS.to_string());
+            for (which, name) in ["ABSORPTION", "MOMENT", "EMISSION"].into_iter().enumerate() {
+                number(name, "i32", &which.to_string());
+            }
+        }
+        Model::Analytic(bells) => {
+            let [absorption, emission] = steps_nm(bells).map(float);
+            number("ABSORPTION_STEP_NM", "f32", &absorption);
+            number("EMISSION_STEP_NM", "f32", &emission);
+            number("QUANTUM_YIELD", "f32", &float(single(bells.quantum_yield())));
+            number("NEWTON_STEPS", "i32", &NEWTON_STEPS.to_string());
+            if bells.accounting() == Accounting::Photon {
+                number("BRACKETED_STEPS", "i32", &BRACKETED_STEPS.to_string());
+            }
+        }
+    }
+    text.push('\n');
+    text
+}
+
+/// Distances of knots of the bells of absorption and emission, nm.
+///
+/// A bell of unit area has its peak of 2/3 over the step.
+fn steps_nm(bells: &AnalyticModel) -> [f32; 2] {
+    let emission = 2.0 / 3.0 / bells.emission(0.0, 0.0).0;
+    let widths = bells.absorption_fwhm_nm() / bells.emission_fwhm_nm();
+    [single(emission * widths), single(emission)]
+}
+
+/// The number with as many digits as lead back to it, and never without a point.
+fn float(value: f32) -> String {
+    format!("{value:?}")
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "rounding is what it is for")]
+fn single(value: f64) -> f32 {
+    value as f32
+}
+
+/// The textures and the functions that read a texel of them.
+fn fetches(language: Language, name: &str, nodes: &Texture, curves: Option<&Texture>) -> String {
+    let mut text = match language {
+        Language::Glsl => GLSL_SAMPLER.to_owned(),
+        Language::Osl => OSL_TEXEL.to_owned(),
+        Language::Wgsl | Language::Hlsl => String::new(),
+    };
+    let textures = [("node", "nodes", Some(nodes)), ("curve", "curves", curves)];
+    for (binding, (texel, texture, found)) in textures.into_iter().enumerate() {
+        let Some(found) = found else { continue };
+        let macros = texture.to_uppercase();
+        text += &match language {
+            Language::Wgsl => wgsl_fetch(binding, texel, texture),
+            Language::Glsl => glsl_fetch(binding, texel, texture, &macros),
+            Language::Hlsl => hlsl_fetch(binding, texel, texture, &macros),
+            Language::Osl => osl_fetch(name, texel, texture, &macros, found),
+        };
+    }
+    text
+}
+
+fn wgsl_fetch(binding: usize, texel: &str, texture: &str) -> String {
+    format!(
+        "@group(0) @binding({binding}) var upglow_{texture}: texture_2d<f32>;
+
+fn upglow_{texel}(column: i32, row: i32) -> vec4f {{
+    return textureLoad(upglow_{texture}, vec2i(column, row), 0);
+}}
+
+"
+    )
+}
+
+fn glsl_fetch(binding: usize, texel: &str, texture: &str, macros: &str) -> String {
+    format!(
+        "#ifndef UPGLOW_{macros}_LAYOUT
+#define UPGLOW_{macros}_LAYOUT binding = {binding}
+#endif
+layout(UPGLOW_{macros}_LAYOUT) uniform highp UPGLOW_SAMPLER upglow_{texture};
+
+vec4 upglow_{texel}(int column, int row) {{
+    return texelFetch(upglow_{texture}, ivec2(column, row), 0);
+}}
+
+"
+    )
+}
+
+fn hlsl_fetch(binding: usize, texel: &str, texture: &str, macros: &str) -> String {
+    format!(
+        "#ifndef UPGLOW_{macros}_REGISTER
+#define UPGLOW_{macros}_REGISTER t{binding}
+#endif
+Texture2D<float4> upglow_{texture} : register(UPGLOW_{macros}_REGISTER);
+
+float4 upglow_{texel}(int column, int row) {{
+    return upglow_{texture}.Load(int3(column, row, 0));
+}}
+
+"
+    )
+}
+
+/// Vulkan can have textures without a sampler.
+const GLSL_SAMPLER: &str = "#ifndef UPGLOW_SAMPLER
+#define UPGLOW_SAMPLER sampler2D
+#endif
+";
+
+/// OSL has no four numbers in one, and reads textures between 0 and 1.
+const OSL_TEXEL: &str = r#"struct UpglowTexel {
+    float x;
+    float y;
+    float z;
+    float w;
+};
+
+UpglowTexel upglow_texel(string file, float s, float t) {
+    UpglowTexel texel;
+    float w = 0.0;
+    color rgb = texture(file, s, t, 0.0, 0.0, 0.0, 0.0, "interp", "closest", "wrap", "clamp",
+        "alpha", w);
+    texel.x = rgb[0];
+    texel.y = rgb[1];
+    texel.z = rgb[2];
+    texel.w = w;
+    return texel;
+}
+
+"#;
+
+fn osl_fetch(name: &str, texel: &str, texture: &str, macros: &str, found: &Texture) -> String {
+    let [width, height] = [found.width, found.height()];
+    format!(
+        "#ifndef UPGLOW_{macros}
+#define UPGLOW_{macros} \"{name}.{texture}.tif\"
+#endif
+
+UpglowTexel upglow_{texel}(int column, int row) {{
+    return upglow_texel(UPGLOW_{macros}, (column + 0.5) / {width}.0, (row + 0.5) / {height}.0);
+}}
+
+"
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use upglow::{FitRecord, Node};
+    use upglow_color::Contract;
+
+    fn cube(model: Model, resolution: usize) -> Cube {
+        let nodes = vec![Node::default(); resolution.pow(3)];
+        Cube::new(Contract::default(), model, FitRecord::default(), resolution, nodes).unwrap()
+    }
+
+    #[test]
+    fn cubes_that_make_too_tall_a_texture_are_refused() {
+        let shader = |n| Shader::new(&cube(Model::Reflectance, n), Language::Wgsl, "x");
+        assert!(shader(90).is_ok());
+        assert_eq!(
+            shader(91).unwrap_err().to_string(),
+            "resolution 91, expected at most 90: textures have up to 8192 rows"
+        );
+    }
+
+    #[test]
+    fn names_that_could_break_the_text_are_refused() {
+        for name in ["", "a\"b", "a\nb", "../a", "a b"] {
+            let found = Shader::new(&cube(Model::Reflectance, 2), Language::Osl, name).unwrap_err();
+            assert_eq!(found, ShaderError::Name { found: name.into() });
+        }
+    }
+
+    #[test]
+    fn the_knots_are_those_of_the_widths() {
+        let [absorption, emission] = steps_nm(&AnalyticModel::default());
+        // Single precision of numbers below 64. The width of the unit bell is in the file's format.
+        assert!((absorption - 50.0 / 1.444_703_4).abs() < 4e-6);
+        assert!((emission - 45.0 / 1.444_703_4).abs() < 4e-6);
+    }
+
+    #[test]
+    fn the_heading_names_the_payload_and_its_checksum() {
+        let shader = Shader::new(&cube(Model::Reflectance, 2), Language::Glsl, "gray").unwrap();
+        let stated = &shader.payload[0].bytes[32..40];
+        let stated = u64::from_le_bytes(stated.try_into().unwrap());
+        let line = format!("// Reads gray.textures; checksum {stated:016x}.\n");
+        assert!(shader.source.contains(&line), "{}", shader.source);
+    }
+}

@@ -1,0 +1,179 @@
+//! From the templates' dialect to the other languages.
+//!
+//! Templates are WGSL that states every type and uses only what all four languages have: structs of
+//! numbers and structs, functions, `if`, `for`, and the functions of numbers that share a name. What
+//! is left to change is the order of names and types, and a few words.
+
+use crate::Language;
+
+/// `wgsl` in `language`, line by line.
+pub(crate) fn translate(wgsl: &str, language: Language) -> String {
+    if language == Language::Wgsl {
+        return wgsl.into();
+    }
+    let mut in_struct = false;
+    let mut text = String::with_capacity(wgsl.len());
+    for line in wgsl.lines() {
+        let (code, comment) = line.split_at(line.find("//").unwrap_or(line.len()));
+        let indent = &code[..code.len() - code.trim_start().len()];
+        let code = code.trim_start();
+        let closes = in_struct && code == "}";
+        in_struct = code.starts_with("struct ") || in_struct && !closes;
+        text += indent;
+        text += &words(&rearranged(code, in_struct, language), language);
+        text += if closes { ";" } else { "" };
+        text += comment;
+        text.push('\n');
+    }
+    text
+}
+
+/// A line with types before names.
+fn rearranged(code: &str, in_struct: bool, language: Language) -> String {
+    let declaration = |keyword: &str| {
+        let (name, rest) = code.strip_prefix(keyword)?.split_once(": ")?;
+        let end = rest.find([' ', ';'])?;
+        Some((name, &rest[..end], &rest[end..]))
+    };
+    if let Some((name, kind, value)) = declaration("const ") {
+        return constant(name, kind, value, language);
+    }
+    if let Some((name, kind, rest)) = declaration("let ").or_else(|| declaration("var ")) {
+        return format!("{kind} {name}{rest}");
+    }
+    if let Some(signature) = code.strip_prefix("fn ") {
+        return function(signature).unwrap_or_else(|| code.into());
+    }
+    if let Some((name, rest)) = code.strip_prefix("for (var ").and_then(|c| c.split_once(": ")) {
+        let (kind, rest) = rest.split_once(' ').unwrap_or((rest, ""));
+        return format!("for ({kind} {name} {rest}");
+    }
+    match code.split_once(": ") {
+        Some((name, rest)) if in_struct => {
+            let kind = rest.trim_end();
+            let blank = &rest[kind.len()..];
+            format!("{} {name};{blank}", kind.trim_end_matches(','))
+        }
+        _ => code.into(),
+    }
+}
+
+fn constant(name: &str, kind: &str, value: &str, language: Language) -> String {
+    match language {
+        // No variables outside functions.
+        Language::Osl => {
+            let value = value.trim_start_matches(" = ").trim_end_matches(';');
+            format!("#define {name} {value}")
+        }
+        Language::Hlsl => format!("static const {kind} {name}{value}"),
+        Language::Wgsl | Language::Glsl => format!("const {kind} {name}{value}"),
+    }
+}
+
+/// `name(a: A, b: B) -> C {` as `C name(A a, B b) {`.
+fn function(signature: &str) -> Option<String> {
+    let (name, rest) = signature.split_once('(')?;
+    let (parameters, rest) = rest.split_once(") -> ")?;
+    let (kind, rest) = rest.split_once(' ')?;
+    let parameters: Option<Vec<String>> = parameters
+        .split(", ")
+        .map(|parameter| parameter.split_once(": ").map(|(name, kind)| format!("{kind} {name}")))
+        .collect();
+    Some(format!("{kind} {name}({}) {rest}", parameters?.join(", ")))
+}
+
+/// The line with each word in the language's own.
+fn words(code: &str, language: Language) -> String {
+    let mut text = String::with_capacity(code.len());
+    let mut rest = code;
+    while !rest.is_empty() {
+        let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
+        let end = rest.find(|c| !is_word(c)).unwrap_or(rest.len());
+        text += word(&rest[..end], language);
+        let next = rest[end..].find(is_word).map_or(rest.len(), |at| end + at);
+        text += &rest[end..next];
+        rest = &rest[next..];
+    }
+    text
+}
+
+fn word(word: &str, language: Language) -> &str {
+    use Language::{Glsl, Hlsl, Osl};
+    match (word, language) {
+        ("f32", _) => "float",
+        ("i32", _) => "int",
+        ("vec3f", Glsl) => "vec3",
+        ("vec3f", Hlsl) => "float3",
+        ("vec3f", Osl) => "color",
+        ("vec4f", Glsl) => "vec4",
+        ("vec4f", Hlsl) => "float4",
+        ("vec4f", Osl) => "UpglowTexel",
+        ("mix", Hlsl) => "lerp",
+        ("bool", Osl) => "int",
+        ("true", Osl) => "1",
+        ("false", Osl) => "0",
+        _ => word,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const WGSL: &str = "\
+const COUNT: i32 = 3;
+// A pair: of numbers.
+struct Pair {
+    a: f32, // the first: nm
+    b: vec4f,
+}
+
+fn f(p: Pair, n: i32) -> bool {
+    let x: f32 = mix(p.a, 1.0, 0.5); // let y: f32
+    var q: Pair;
+    for (var k: i32 = 0; k < COUNT; k += 1) {
+        q.a = f32(k) * x;
+    }
+    return true;
+}
+";
+
+    #[test]
+    fn declarations_turn_around_and_words_change() {
+        assert_eq!(
+            translate(WGSL, Language::Hlsl),
+            "\
+static const int COUNT = 3;
+// A pair: of numbers.
+struct Pair {
+    float a; // the first: nm
+    float4 b;
+};
+
+bool f(Pair p, int n) {
+    float x = lerp(p.a, 1.0, 0.5); // let y: f32
+    Pair q;
+    for (int k = 0; k < COUNT; k += 1) {
+        q.a = float(k) * x;
+    }
+    return true;
+}
+"
+        );
+    }
+
+    #[test]
+    fn osl_has_its_own_constants_and_truths() {
+        let osl = translate(WGSL, Language::Osl);
+        assert!(osl.starts_with("#define COUNT 3\n"));
+        assert!(osl.contains("    UpglowTexel b;\n};\n"));
+        assert!(osl.contains("int f(Pair p, int n) {\n"));
+        assert!(osl.contains("return 1;\n"));
+        assert!(osl.contains("1.0, 0.5)"));
+    }
+
+    #[test]
+    fn wgsl_stays_as_it_is() {
+        assert_eq!(translate(WGSL, Language::Wgsl), WGSL);
+    }
+}
