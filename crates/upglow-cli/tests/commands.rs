@@ -239,6 +239,23 @@ fn export_holds_every_number_of_the_cube() {
     }
 }
 
+#[test]
+fn shaders_come_with_their_textures() {
+    let folder = folder_with_cube("");
+    for (language, textures) in [
+        ("wgsl", vec!["sky.textures"]),
+        ("glsl", vec!["sky.textures"]),
+        ("hlsl", vec!["sky.textures"]),
+        ("osl", vec!["sky.nodes.tif", "sky.curves.tif"]),
+    ] {
+        let report = folder.json(&format!("export cube sky.{language}"));
+        assert_eq!(report["textures"], serde_json::json!(textures), "{language}");
+        let source = String::from_utf8(folder.read(&format!("sky.{language}"))).unwrap();
+        assert!(source.contains("upglow_look_up") && source.contains(textures[0]), "{language}");
+        assert!(textures.iter().all(|texture| !folder.read(texture).is_empty()), "{language}");
+    }
+}
+
 /// Compares a line with its node, to the last bit.
 fn check_line(cube: &Cube, index: usize, cells: &[&str], dyes: bool) {
     let double = |cell: usize| cells[cell].parse::<f64>().unwrap();

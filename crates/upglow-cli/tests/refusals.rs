@@ -221,6 +221,14 @@ fn a_cube_is_not_replaced_by_what_is_made_of_it() {
     assert_eq!(folder.read("cube"), before);
 }
 
+#[test]
+fn a_shader_needs_a_name_that_fits_into_its_text() {
+    let folder = folder_with_cube();
+    let line = folder.refused(1, "export cube sk,y.wgsl");
+    assert_eq!(line, "sk,y.wgsl: name \"sk,y\", expected letters, digits, '.', '-' or '_'");
+    assert!(!folder.path().join("sk,y.wgsl").exists());
+}
+
 /// Runs words of the program in a shell, after `preparation`; gives status and standard error.
 #[cfg(unix)]
 #[expect(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
