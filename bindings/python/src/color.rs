@@ -42,7 +42,9 @@ pub(crate) fn colors(
     let colorimetry = match (light, scale) {
         (None, "white" | "power") => own(),
         (Some(light), "white") => {
-            Contract { illuminant: light.0.clone(), ..contract.clone() }.on(grid)
+            let contract = Contract { illuminant: light.0.clone(), ..contract.clone() };
+            contract.check().map_err(value_error)?;
+            contract.on(grid)
         }
         (Some(light), "power") => own().relit(&contract.observer, &light.0),
         _ => return Err(value_error(format_args!("scale {scale:?}, expected white or power"))),

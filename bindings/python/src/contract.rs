@@ -4,11 +4,12 @@ use std::sync::OnceLock;
 
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
-use upglow_color::{Colorimetry, Grid, LinearRgb, Observer, RgbSpace};
+use upglow_color::{Colorimetry, Grid, RgbSpace};
 use upglow_fit::StandingTable;
 
 use crate::errors::value_error;
 use crate::illuminant::Illuminant;
+use crate::observer::Observer;
 
 /// RGB space, illuminant, observer and chromatic adaptation.
 #[pyclass(frozen, module = "upglow._upglow")]
@@ -42,19 +43,26 @@ impl Contract {
 #[pymethods]
 impl Contract {
     #[new]
-    fn new(space: Space, illuminant: &Illuminant, adaptation: &str) -> PyResult<Self> {
+    fn new(
+        space: Space,
+        illuminant: &Illuminant,
+        observer: &Observer,
+        adaptation: &str,
+    ) -> PyResult<Self> {
         let space = match space {
             Space::Name(name) => RgbSpace::named(&name),
             Space::Numbers([rx, ry, gx, gy, bx, by, wx, wy]) => {
                 RgbSpace::custom("custom", [[rx, ry], [gx, gy], [bx, by]], [wx, wy])
             }
         };
-        Ok(Self::of(upglow_color::Contract {
+        let contract = upglow_color::Contract {
             space: space.map_err(value_error)?,
             illuminant: illuminant.0.clone(),
-            observer: Observer::default(),
+            observer: observer.0.clone(),
             adaptation: adaptation.parse().map_err(value_error)?,
-        }))
+        };
+        contract.check().map_err(value_error)?;
+        Ok(Self::of(contract))
     }
 
     /// The names of the built-in RGB spaces.
@@ -87,10 +95,10 @@ impl Contract {
         Illuminant(self.contract.illuminant.clone())
     }
 
-    /// Name of the observer.
+    /// The eye.
     #[getter]
-    fn observer(&self) -> &str {
-        self.contract.observer.name()
+    fn observer(&self) -> Observer {
+        Observer(self.contract.observer.clone())
     }
 
     /// `bradford` or `none`.
@@ -108,9 +116,7 @@ impl Contract {
     /// The matrix that takes RGB to XYZ, `[X Y Z][red green blue]`.
     #[getter]
     fn xyz_from_rgb<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
-        let unit = |k| LinearRgb([0, 1, 2].map(|i| if i == k { 1.0 } else { 0.0 }));
-        let columns = [0, 1, 2].map(|k| self.colorimetry.xyz_from_rgb(unit(k)).0);
-        matrix(py, [0, 1, 2].map(|row| columns.map(|column| column[row])))
+        matrix(py, self.colorimetry.xyz_from_rgb_matrix().0)
     }
 
     /// The matrix that takes XYZ to RGB, `[red green blue][X Y Z]`.

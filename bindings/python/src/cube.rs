@@ -37,6 +37,11 @@ type Summary = (usize, usize, usize, usize, f64, f64, f64, usize);
 
 #[pymethods]
 impl Cube {
+    /// What fluoresces, and by what rules.
+    fn model(&self) -> crate::model::Model {
+        crate::model::Model(self.cube.model().clone())
+    }
+
     /// Reads a cube's file.
     #[staticmethod]
     fn read(py: Python<'_>, path: PathBuf) -> PyResult<Self> {

@@ -1,7 +1,5 @@
 //! Lights.
 
-use std::fmt::Write as _;
-
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use upglow_color::Grid;
@@ -36,10 +34,9 @@ impl Illuminant {
     /// The light with these samples; wavelengths are nm.
     #[staticmethod]
     fn from_samples(name: &str, wavelengths_nm: Vec<f64>, power: Vec<f64>) -> PyResult<Self> {
-        let text = csv_text(["power"], &wavelengths_nm, [&power]);
-        upglow_color::Illuminant::from_csv(name, &text)
+        upglow_color::Illuminant::from_samples(name, &wavelengths_nm, &power)
             .map(Self)
-            .map_err(|error| value_error(format_args!("{name} as CSV: {error}")))
+            .map_err(|error| value_error(format_args!("{name}: {error}")))
     }
 
     /// A light with one Gaussian line; wavelengths are nm.
@@ -75,25 +72,4 @@ impl Illuminant {
     fn wavelengths_nm(py: Python<'_>) -> Bound<'_, PyArray1<f64>> {
         PyArray1::from_iter(py, Grid::FINE.wavelengths_nm())
     }
-}
-
-/// CSV text of samples: the way in that checks wavelengths, gaps and range. Not-a-number is an empty
-/// cell.
-pub(crate) fn csv_text<const N: usize>(
-    columns: [&str; N],
-    wavelengths_nm: &[f64],
-    samples: [&[f64]; N],
-) -> String {
-    let mut text = format!("wavelength_nm,{}", columns.join(","));
-    for (i, nm) in wavelengths_nm.iter().enumerate() {
-        // Writing to a string does not fail.
-        let _ = write!(text, "\n{nm}");
-        for column in samples {
-            let _ = match column.get(i) {
-                Some(value) if !value.is_nan() => write!(text, ",{value}"),
-                _ => write!(text, ","),
-            };
-        }
-    }
-    text
 }

@@ -4,10 +4,9 @@ use std::path::PathBuf;
 
 use pyo3::prelude::*;
 use upglow::{AnalyticModel, DyeModel, DyeOptions, DyeSetError, QuantumYield};
-use upglow_color::{MeasuredDye, dye_set_names, read_columns};
+use upglow_color::{MeasuredDye, dye_set_names};
 
 use crate::errors::{os_error, value_error};
-use crate::illuminant::csv_text;
 
 /// A ring of measured dyes.
 #[pyclass(frozen, module = "upglow._upglow")]
@@ -58,15 +57,13 @@ impl DyeSet {
 }
 
 fn measured((name, nm, absorption, emission, quantum_yield): Sampled) -> PyResult<MeasuredDye> {
-    let text = csv_text(["absorption", "emission"], &nm, [&absorption, &emission]);
-    let [absorption, emission] = read_columns(&text, ["absorption", "emission"], true)
-        .map_err(|error| value_error(format_args!("dye {name} as CSV: {error}")))?;
+    let dye = MeasuredDye::from_samples(&name, &nm, &absorption, &emission)
+        .map_err(|error| value_error(format_args!("dye {name}: {error}")))?;
     if let Some(found) = quantum_yield.filter(|q| !(0.0..=1.0).contains(q)) {
         let expected = "expected 0 to 1";
         return Err(value_error(format_args!("dye {name}: quantum yield {found}, {expected}")));
     }
-    let provenance = "given in Python".to_owned();
-    Ok(MeasuredDye { name, absorption, emission, quantum_yield, provenance })
+    Ok(MeasuredDye { quantum_yield, provenance: "given in Python".to_owned(), ..dye })
 }
 
 fn set_error(error: &DyeSetError) -> PyErr {

@@ -152,7 +152,7 @@ def test_dyes_come_from_a_folder_or_from_arrays(tmp_path) -> None:
     cubes = [upglow.build(model=model, resolution=3) for model in (folder, arrays)]
     assert np.array_equal(cubes[0].dye_curves, cubes[1].dye_curves)
     assert np.array_equal(cubes[0].nodes.fluorescence, cubes[1].nodes.fluorescence)
-    with pytest.raises(ValueError, match="dye x as CSV: covers 400 to 500 nm, expected at least"):
+    with pytest.raises(ValueError, match="dye x: covers 400 to 500 nm, expected at least"):
         short = (np.arange(400.0, 501.0), np.ones(101))
         upglow.Dyes(set=[upglow.Dye(name="x", absorption=short, emission=short)]).names()
     with pytest.raises(FileNotFoundError):

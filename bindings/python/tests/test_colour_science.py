@@ -24,10 +24,18 @@ COLORS = np.array(
 )
 
 
-def integrated(sd: colour.SpectralDistribution, light: np.ndarray) -> np.ndarray:
+TWO_DEGREES = colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"]
+TEN_DEGREES = colour.MSDS_CMFS["CIE 1964 10 Degree Standard Observer"]
+
+
+def integrated(
+    sd: colour.SpectralDistribution,
+    light: np.ndarray,
+    eye: colour.MultiSpectralDistributions = TWO_DEGREES,
+) -> np.ndarray:
     """XYZ of a spectrum under a light, both over 1 nm; the eye begins at 360 nm."""
     shape = colour.SpectralShape(360, 830, 1)
-    observer = colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"].copy().align(shape)
+    observer = eye.copy().align(shape)
     illuminant = colour.SpectralDistribution(light, upglow.FINE_NM).align(shape)
     with warnings.catch_warnings():
         # It says that it aligns the light with the observer.
@@ -43,6 +51,38 @@ def test_spectra_integrate_to_the_same_color(cube, rgb, name) -> None:
     assert isinstance(sd, colour.SpectralDistribution)
     expected = integrated(sd, light.power)
     assert np.abs(cube.xyz(rgb, light=light, step_nm=1) - expected).max() < COLOR
+
+
+@pytest.fixture(scope="module")
+def cube_10deg() -> upglow.Cube:
+    """ACEScg under D65 for colour-science's 10° observer."""
+    return upglow.build(upglow.Contract(observer=TEN_DEGREES), resolution=5)
+
+
+@pytest.mark.parametrize("name", ["D65", "A"])
+@pytest.mark.parametrize("rgb", COLORS)
+def test_its_observers_see_the_same_color(cube_10deg, rgb, name) -> None:
+    light = upglow.Illuminant(name)
+    sd = cube_10deg.spectral_distribution(rgb, upglow.FINE_NM, light=light)
+    expected = integrated(sd, light.power, TEN_DEGREES)
+    found = cube_10deg.xyz(rgb, light=light, step_nm=1)
+    assert np.abs(found - expected).max() < COLOR
+    # And it is another eye: the 2° observer sees something else, except black.
+    assert np.abs(found - integrated(sd, light.power)).max() > 10 * COLOR
+
+
+def test_its_observers_keep_their_names_and_whites() -> None:
+    contract = upglow.Contract(observer=TEN_DEGREES)
+    assert contract.observer.name == TEN_DEGREES.name
+    white = contract.white_xyz / contract.white_xyz.sum()
+    published = colour.CCS_ILLUMINANTS[TEN_DEGREES.name]["D65"]
+    # Sums over 5 nm here, over 5 nm from 380 to 780 nm there.
+    assert np.abs(white[:2] - published).max() < 2 * COLOR
+
+
+def test_its_observer_is_ours() -> None:
+    theirs = upglow.Observer(TWO_DEGREES)
+    assert np.abs(theirs.matching - upglow.Contract().observer.matching).max() < 1e-12
 
 
 def test_sums_over_5_nm_are_near_sums_over_1_nm(cube) -> None:
@@ -70,7 +110,7 @@ def test_the_contract_is_colour_sciences(cube) -> None:
 
 def test_its_lights_are_taken_once_they_cover_the_range(cube) -> None:
     light = colour.SDS_ILLUMINANTS["D65"]
-    with pytest.raises(ValueError, match="D65 as CSV: covers 300 to 780 nm, expected at least"):
+    with pytest.raises(ValueError, match="D65: covers 300 to 780 nm, expected at least"):
         upglow.Contract(illuminant=light)
     longer = light.copy().extrapolate(colour.SpectralShape(300, 830, 5))
     assert upglow.Illuminant(longer).name == longer.name

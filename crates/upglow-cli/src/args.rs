@@ -107,6 +107,14 @@ pub(crate) struct BuildArgs {
     /// Light: D65, D60, D55, D50, A, E, or a CSV file with the header `wavelength_nm,power`
     #[arg(long, default_value = "D65", value_name = "NAME|FILE", help_heading = "What RGB means")]
     pub(crate) illuminant: String,
+    /// Eye: cie-1931-2deg, or a CSV file with the header `wavelength_nm,x,y,z`
+    #[arg(
+        long,
+        default_value = "cie-1931-2deg",
+        value_name = "NAME|FILE",
+        help_heading = "What RGB means"
+    )]
+    pub(crate) observer: String,
     /// Chromatic adaptation from the white of the space to that of the light: bradford or none
     #[arg(long, default_value = "bradford", value_name = "NAME", help_heading = "What RGB means")]
     pub(crate) adapt: Adaptation,

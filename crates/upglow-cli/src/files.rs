@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use upglow::{Cube, ReadCubeError, WriteCubeError, write_whole};
+use upglow::{Aside, AsideError, Cube, ReadCubeError, write_whole};
 
 use crate::failure::{Failure, io_message};
 
@@ -45,11 +45,15 @@ pub(crate) fn check_output(path: &Path) -> Result<(), Failure> {
             format_args!("no folder {folder}, expected an existing one"),
         ));
     }
-    tempfile::Builder::new().prefix(".upglow-").tempfile_in(folder).map_err(|error| {
-        let (found, folder) = (io_message(&error), folder.display());
-        Failure::file(path, format_args!("{found} in folder {folder}, expected one to write in"))
-    })?;
-    Ok(())
+    match Aside::create(path) {
+        Ok(_) => Ok(()),
+        Err(AsideError::Io(error)) => {
+            let (found, folder) = (io_message(&error), folder.display());
+            let message = format_args!("{found} in folder {folder}, expected one to write in");
+            Err(Failure::file(path, message))
+        }
+        Err(error) => Err(Failure::file(path, error)),
+    }
 }
 
 /// Checks that writing `output` does not replace the cube that was read from `input`.
@@ -68,7 +72,7 @@ pub(crate) fn is_same(a: &Path, b: &Path) -> bool {
 /// Writes a file that appears whole or not at all.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     write_whole(path, bytes).map_err(|error| match error {
-        WriteCubeError::Io(error) => Failure::file(
+        AsideError::Io(error) => Failure::file(
             path,
             format_args!(
                 "{}, expected room for {} and the right to write",
@@ -76,9 +80,6 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
                 size(bytes.len() as u64)
             ),
         ),
-        WriteCubeError::NotAFile { .. } => {
-            Failure::file(path, "not a file, expected a path to write a file at")
-        }
         error => Failure::file(path, error),
     })
 }

@@ -31,9 +31,10 @@ impl BuildPlan {
         let contract = Contract {
             space: space(&args.space)?,
             illuminant: light("--illuminant", &args.illuminant)?,
-            observer: Observer::default(),
+            observer: observer(&args.observer)?,
             adaptation: args.adapt,
         };
+        check(&contract)?;
         let model = model(args)?;
         let options = FitOptions {
             metric: args.metric,
@@ -77,6 +78,24 @@ pub(crate) fn light(option: &'static str, text: &str) -> Result<Illuminant, Fail
         }
         named => named.map_err(|error: IlluminantError| Failure::option(option, error)),
     }
+}
+
+/// An observer by name or file.
+fn observer(text: &str) -> Result<Observer, Failure> {
+    let path = Path::new(text);
+    match Observer::named(text) {
+        Err(_) if is_path(path) => {
+            let text = files::read_text(path, "a CSV file with the header wavelength_nm,x,y,z")?;
+            let name = path.file_stem().map(|stem| stem.to_string_lossy()).unwrap_or_default();
+            Observer::from_csv(&name, &text).map_err(|error| Failure::file(path, error))
+        }
+        named => named.map_err(|error| Failure::option("--observer", error)),
+    }
+}
+
+/// Refuses a light that the observer does not see.
+pub(crate) fn check(contract: &Contract) -> Result<(), Failure> {
+    contract.check().map_err(|error| Failure::option("--illuminant", error))
 }
 
 /// Whether a word that is no built-in name is meant as a file or folder.

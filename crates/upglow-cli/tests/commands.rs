@@ -4,7 +4,7 @@
 mod support;
 
 use serde_json::Value;
-use support::{Folder, curves, dye};
+use support::{Folder, curves, dye, eye};
 use upglow::{Cube, Edge, FitRecord, Fluorescence, Model, Node, Vertex};
 use upglow_color::Contract;
 
@@ -42,11 +42,14 @@ fn every_option_of_build_is_in_the_cube() {
         folder.write(&format!("ring/{peak}.csv"), dye(peak));
     }
     folder.write("lamp.csv", curves("power", |nm| nm.to_string()));
+    folder.write("eye.csv", eye());
     let cases = [
         ("--space rec2020", "/contract/rgb_space", "\"rec2020\""),
         ("--space 0.64,0.33,0.3,0.6,0.15,0.06,0.3127,0.329", "/contract/rgb_space", "\"custom\""),
         ("--illuminant A", "/contract/illuminant", "\"A\""),
         ("--illuminant lamp.csv", "/contract/illuminant", "\"lamp\""),
+        ("--observer CIE-1931-2DEG", "/contract/observer", "\"CIE 1931 2°\""),
+        ("--observer eye.csv", "/contract/observer", "\"eye\""),
         ("--adapt none", "/contract/adaptation", "\"none\""),
         ("--model reflectance", "/model/kind", "\"reflectance\""),
         ("--model analytic", "/model/kind", "\"analytic\""),

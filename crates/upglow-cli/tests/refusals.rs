@@ -4,7 +4,7 @@ mod support;
 
 use std::process::{Command, Stdio};
 
-use support::{Folder, curves, dye, one_line, program};
+use support::{Folder, curves, dye, eye, one_line, program};
 
 fn folder_with_cube() -> Folder {
     let folder = Folder::new();
@@ -117,12 +117,40 @@ fn lights_that_are_none() {
 }
 
 #[test]
+fn a_light_of_one_nanometer_that_sums_over_five_miss() {
+    let folder = Folder::new();
+    let rows = (300..=830).map(|nm| format!("{nm},{}\n", u32::from(nm == 562)));
+    folder.write("needle.csv", format!("wavelength_nm,power\n{}", rows.collect::<String>()));
+    let line = folder.refused(2, "build --illuminant needle.csv -o cube");
+    assert!(line.starts_with("--illuminant: the observer CIE 1931 2° sees no light of"), "{line}");
+}
+
+#[test]
+fn observers_that_are_none() {
+    let folder = Folder::new();
+    let build = |text: &str| {
+        folder.write("eye.csv", text);
+        folder.refused(1, "build --observer eye.csv -o cube")
+    };
+    let line = build("wavelength_nm,r,g,b\n");
+    assert!(line.starts_with("eye.csv: header \"wavelength_nm,r,g,b\", expected"), "{line}");
+    let line = build(&eye().replace("\n450,", "\n450,-"));
+    assert!(line.starts_with("eye.csv: line 15: -"), "{line}");
+    let short: String = eye().split_inclusive('\n').take(40).collect();
+    let line = build(&short);
+    assert!(line.starts_with("eye.csv: covers 385 to 575 nm, expected at least 400"), "{line}");
+    let line = folder.refused(1, "build --observer absent.csv -o cube");
+    assert!(line.starts_with("absent.csv: no such file"), "{line}");
+}
+
+#[test]
 fn command_lines_that_do_not_fit() {
     let folder = folder_with_cube();
     let cases = [
         ("build --space rec709 -o x", "--space: unknown RGB space \"rec709\", expected acescg"),
         ("build --space 1,2,3 -o x", "--space: unknown RGB space"),
         ("build --illuminant F11 -o x", "--illuminant: unknown illuminant \"F11\", expected D65"),
+        ("build --observer hawk -o x", "--observer: unknown observer \"hawk\", expected cie-1931"),
         ("build --dyes none -o x", "--dyes: unknown dye set \"none\", expected seed8"),
         ("build --metric lab -o x", "--metric: unknown metric \"lab\", expected de2000"),
         ("build --model paint -o x", "--model: unknown model \"paint\", expected dyes"),

@@ -112,8 +112,8 @@ impl ColorSolid {
     /// four corners.
     fn search(&self, color: Xyz, goal: Goal) -> Nearest {
         let relative = |p: Xyz| [0, 1, 2].map(|k| p.0[k] - color.0[k]);
-        let mut simplex = vec![relative(self.support([1.0; 3]))];
-        let mut nearest = simplex[0];
+        let mut nearest = relative(self.support([1.0; 3]));
+        let mut simplex = Corners::from_iter([nearest]);
         for _ in 0..STEP_LIMIT {
             let square = dot(nearest, nearest);
             if square <= ON_THE_SURFACE * ON_THE_SURFACE {
@@ -145,54 +145,93 @@ enum Goal {
     Distance,
 }
 
-/// The point nearest to the origin of the convex hull of at most four points, and the corners of
-/// the face it lies in.
-fn nearest_of_simplex(corners: &[[f64; 3]]) -> ([f64; 3], Vec<[f64; 3]>) {
-    let faces = (1..1_u32 << corners.len()).filter_map(|mask| {
-        let face: Vec<[f64; 3]> =
-            (0..corners.len()).filter(|i| mask >> i & 1 == 1).map(|i| corners[i]).collect();
-        nearest_of_plane(&face).map(|point| (point, face))
-    });
-    let square = |p: &([f64; 3], Vec<[f64; 3]>)| dot(p.0, p.0);
-    faces
-        .min_by(|p, q| square(p).total_cmp(&square(q)))
-        .expect("each single corner is a face that holds its own nearest point")
+/// A face holds at most this many corners of a simplex: in three dimensions the nearest point of
+/// more lies in a face of fewer.
+const FACE: usize = 4;
+
+/// The corners of a face and one more; kept in place, for a search tries dozens of faces.
+#[derive(Clone, Copy, Debug)]
+struct Corners {
+    points: [[f64; 3]; FACE + 1],
+    count: usize,
+}
+
+impl Corners {
+    fn push(&mut self, point: [f64; 3]) {
+        self.points[self.count] = point;
+        self.count += 1;
+    }
+
+    fn points(&self) -> &[[f64; 3]] {
+        &self.points[..self.count]
+    }
+
+    /// Those whose bits are set.
+    fn face(&self, mask: u32) -> Self {
+        let numbered = self.points().iter().enumerate();
+        numbered.filter(|(i, _)| mask >> i & 1 == 1).map(|(_, point)| *point).collect()
+    }
+}
+
+impl FromIterator<[f64; 3]> for Corners {
+    fn from_iter<I: IntoIterator<Item = [f64; 3]>>(points: I) -> Self {
+        let mut corners = Self { points: [[0.0; 3]; FACE + 1], count: 0 };
+        points.into_iter().for_each(|point| corners.push(point));
+        corners
+    }
+}
+
+/// The point nearest to the origin of the convex hull of some points, and the corners of the face
+/// it lies in.
+fn nearest_of_simplex(corners: &Corners) -> ([f64; 3], Corners) {
+    let masks = (1..1_u32 << corners.count).filter(|mask| mask.count_ones() as usize <= FACE);
+    let (point, mask) = masks
+        .filter_map(|mask| Some((nearest_of_plane(corners.face(mask).points())?, mask)))
+        .min_by(|(p, _), (q, _)| dot(*p, *p).total_cmp(&dot(*q, *q)))
+        .expect("each single corner is a face that holds its own nearest point");
+    (point, corners.face(mask))
 }
 
 /// The point nearest to the origin of the plane through a face; `None` if it is outside the face
 /// or the face is degenerate.
 fn nearest_of_plane(face: &[[f64; 3]]) -> Option<[f64; 3]> {
-    let edges: Vec<[f64; 3]> = face[1..].iter().map(|p| sub(*p, face[0])).collect();
-    let weights = solve_gram(&edges, face[0])?;
+    let edges: Corners = face[1..].iter().map(|p| sub(*p, face[0])).collect();
+    let edges = edges.points();
+    let weights = solve_gram(edges, face[0])?;
+    let weights = &weights[..edges.len()];
     let first = 1.0 - weights.iter().sum::<f64>();
     if first < 0.0 || weights.iter().any(|&w| w < 0.0) {
         return None;
     }
     let moved =
-        |k: usize| face[0][k] + edges.iter().zip(&weights).map(|(e, w)| w * e[k]).sum::<f64>();
+        |k: usize| face[0][k] + edges.iter().zip(weights).map(|(e, w)| w * e[k]).sum::<f64>();
     Some([0, 1, 2].map(moved))
 }
 
-/// Weights uⱼ with eᵢ · (origin + Σ uⱼ eⱼ) = 0 for all edges eᵢ; `None` for dependent edges.
-fn solve_gram(edges: &[[f64; 3]], origin: [f64; 3]) -> Option<Vec<f64>> {
+/// Weights uⱼ with eᵢ · (origin + Σ uⱼ eⱼ) = 0 for all edges eᵢ, at most three; `None` for
+/// dependent edges.
+fn solve_gram(edges: &[[f64; 3]], origin: [f64; 3]) -> Option<[f64; FACE - 1]> {
     let n = edges.len();
-    let mut rows: Vec<Vec<f64>> = edges
-        .iter()
-        .map(|e| edges.iter().map(|f| dot(*e, *f)).chain([-dot(*e, origin)]).collect())
-        .collect();
+    let mut rows = [[0.0; FACE]; FACE - 1];
+    for (row, e) in rows.iter_mut().zip(edges) {
+        row.iter_mut().zip(edges).for_each(|(v, f)| *v = dot(*e, *f));
+        row[n] = -dot(*e, origin);
+    }
     for pivot in 0..n {
-        let diagonal = rows[pivot][pivot];
+        let pivot_row = rows[pivot];
+        let diagonal = pivot_row[pivot];
         // Rounding of the elimination: below this share of the edge's own length nothing is left.
         if diagonal <= 1e-14 * dot(edges[pivot], edges[pivot]) {
             return None;
         }
-        let pivot_row = rows[pivot].clone();
-        for (_, row) in rows.iter_mut().enumerate().filter(|(r, _)| *r != pivot) {
+        for (_, row) in rows[..n].iter_mut().enumerate().filter(|(r, _)| *r != pivot) {
             let factor = row[pivot] / diagonal;
             row.iter_mut().zip(&pivot_row).for_each(|(v, p)| *v -= factor * p);
         }
     }
-    Some((0..n).map(|i| rows[i][n] / rows[i][i]).collect())
+    let mut weights = [0.0; FACE - 1];
+    (0..n).for_each(|i| weights[i] = rows[i][n] / rows[i][i]);
+    Some(weights)
 }
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {

@@ -1,6 +1,8 @@
 //! A contract on a wavelength grid: the numbers that every later sum needs.
 
-use crate::{Contract, Grid, Illuminant, Lab, LinearRgb, Matrix3, Observer, Xyz, lab_from_xyz};
+use crate::{
+    Contract, ContractError, Grid, Illuminant, Lab, LinearRgb, Matrix3, Observer, Xyz, lab_from_xyz,
+};
 
 /// White, matrices and integration weights of a [`Contract`] on a [`Grid`].
 #[derive(Clone, Debug, PartialEq)]
@@ -15,20 +17,28 @@ pub struct Colorimetry {
 }
 
 impl Colorimetry {
-    pub(crate) fn new(contract: &Contract, grid: Grid) -> Self {
+    pub(crate) fn try_new(contract: &Contract, grid: Grid) -> Result<Self, ContractError> {
         let matching = contract.observer.on(grid);
-        let light: Vec<f64> =
-            grid.wavelengths_nm().map(|nm| contract.illuminant.power().at(nm)).collect();
+        let light = sampled(&contract.illuminant, grid);
         let luminance: f64 = light.iter().zip(&matching).map(|(l, m)| l * m[1]).sum();
+        let names = || (contract.observer.name().to_owned(), contract.illuminant.name().to_owned());
+        if !(luminance.is_normal() && luminance > 0.0) {
+            let (observer, illuminant) = names();
+            let step_nm = grid.step_nm();
+            return Err(ContractError::Dark { observer, illuminant, step_nm });
+        }
         let irradiance: Vec<f64> = light.iter().map(|l| l / luminance).collect();
-        let weights: Vec<[f64; 3]> =
-            irradiance.iter().zip(&matching).map(|(e, m)| m.map(|v| e * v)).collect();
+        let weights = weights(&irradiance, &matching);
         let white = Xyz(column_sums(&weights));
         let space_white = Xyz::from_chromaticity(contract.space.white());
         let xyz_from_rgb = contract.adaptation.target_from_source(space_white, white)
             * contract.space.xyz_from_rgb();
-        let rgb_from_xyz = xyz_from_rgb.inverse().expect("a space's primaries make a triangle");
-        Self { grid, irradiance, matching, weights, white, xyz_from_rgb, rgb_from_xyz }
+        let is_bright = white.0.iter().all(|v| v.is_normal() && *v > 0.0);
+        let rgb_from_xyz = xyz_from_rgb.inverse().filter(|_| is_bright).ok_or_else(|| {
+            let (observer, illuminant) = names();
+            ContractError::White { observer, illuminant, white: white.0 }
+        })?;
+        Ok(Self { grid, irradiance, matching, weights, white, xyz_from_rgb, rgb_from_xyz })
     }
 
     /// The grid of every sum.
@@ -61,6 +71,11 @@ impl Colorimetry {
         Xyz(self.xyz_from_rgb * rgb.0)
     }
 
+    /// The matrix behind [`Colorimetry::xyz_from_rgb`]; its columns are the XYZ of the primaries.
+    pub fn xyz_from_rgb_matrix(&self) -> Matrix3 {
+        self.xyz_from_rgb
+    }
+
     /// Linear RGB of a color.
     pub fn rgb_from_xyz(&self, xyz: Xyz) -> LinearRgb {
         LinearRgb(self.rgb_from_xyz * xyz.0)
@@ -91,21 +106,23 @@ impl Colorimetry {
     /// power: under an ultraviolet lamp a white wall is nearly black and fluorescence is not.
     #[must_use]
     pub fn relit(&self, observer: &Observer, light: &Illuminant) -> Self {
-        let contract = Contract {
-            illuminant: light.clone(),
-            observer: observer.clone(),
-            ..Contract::default()
-        };
-        let relit = Self::new(&contract, self.grid);
-        let power = |c: &Self| c.irradiance.iter().sum::<f64>();
-        let scale = power(self) / power(&relit);
-        Self {
-            irradiance: relit.irradiance.iter().map(|e| e * scale).collect(),
-            weights: relit.weights.iter().map(|w| w.map(|v| v * scale)).collect(),
-            white: Xyz(relit.white.0.map(|v| v * scale)),
-            ..self.clone()
-        }
+        let (matching, light) = (observer.on(self.grid), sampled(light, self.grid));
+        let power = |bands: &[f64]| bands.iter().sum::<f64>();
+        let scale = power(&self.irradiance) / power(&light);
+        let irradiance: Vec<f64> = light.iter().map(|l| l * scale).collect();
+        let weights = weights(&irradiance, &matching);
+        let white = Xyz(column_sums(&weights));
+        Self { irradiance, matching, weights, white, ..self.clone() }
     }
+}
+
+/// Power of a light at each wavelength of a grid.
+fn sampled(light: &Illuminant, grid: Grid) -> Vec<f64> {
+    grid.wavelengths_nm().map(|nm| light.power().at(nm)).collect()
+}
+
+fn weights(irradiance: &[f64], matching: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    irradiance.iter().zip(matching).map(|(e, m)| m.map(|v| e * v)).collect()
 }
 
 fn column_sums(rows: &[[f64; 3]]) -> [f64; 3] {

@@ -1,7 +1,7 @@
 //! The measured dyes that come with the program. A new one is a column of `tables/dyes.csv`.
 
 use crate::tables::dyes::{DYE_SETS, DYES, DYES_FIRST_NM, DYES_STEP_NM, DyeRow};
-use crate::{Grid, Spectrum};
+use crate::{Grid, SampleRules, SamplesError, Spectrum, curves_from_samples};
 
 /// A dye as somebody measured it.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,6 +16,30 @@ pub struct MeasuredDye {
     pub quantum_yield: Option<f64>,
     /// Who measured it, where it was published and on what terms.
     pub provenance: String,
+}
+
+impl MeasuredDye {
+    /// A dye from samples: wavelengths (nm) that ascend from 300 to 830 nm in steps of at most 5 nm, and
+    /// for each the absorption, 0 to 1, and the emission, relative, 0 or more. Not-a-number at either
+    /// end of a curve means "not measured there" and counts as zero.
+    ///
+    /// Its quantum yield is `None`, and its provenance empty: set what is known.
+    ///
+    /// # Errors
+    ///
+    /// [`SamplesError`] names the index, from 0, and what was expected there.
+    pub fn from_samples(
+        name: &str,
+        wavelengths_nm: &[f64],
+        absorption: &[f64],
+        emission: &[f64],
+    ) -> Result<Self, SamplesError> {
+        let columns = [("absorption", absorption), ("emission", emission)];
+        let [absorption, emission] =
+            curves_from_samples(wavelengths_nm, columns, SampleRules::DYE)?;
+        let (name, provenance) = (name.to_owned(), String::new());
+        Ok(Self { name, absorption, emission, quantum_yield: None, provenance })
+    }
 }
 
 impl From<&DyeRow> for MeasuredDye {
@@ -59,6 +83,19 @@ pub fn dye_set(name: &str) -> Option<Vec<MeasuredDye>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_dye_is_what_its_samples_are() {
+        let known = measured_dye("ATTO_390").unwrap();
+        let nm: Vec<f64> = Grid::FINE.wavelengths_nm().collect();
+        let (absorption, emission) = (known.absorption.values(), known.emission.values());
+        let sampled = MeasuredDye::from_samples("ATTO_390", &nm, absorption, emission).unwrap();
+        assert_eq!(sampled.absorption, known.absorption);
+        assert_eq!((&sampled.emission, sampled.quantum_yield), (&known.emission, None));
+        let refused =
+            MeasuredDye::from_samples("x", &nm[100..], &absorption[100..], &emission[100..]);
+        assert!(refused.unwrap_err().to_string().starts_with("covers 400 to 830 nm, expected at"));
+    }
 
     #[test]
     fn every_set_is_complete_and_every_curve_is_a_fraction() {

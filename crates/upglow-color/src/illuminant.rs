@@ -1,7 +1,9 @@
 //! Light sources.
 
 use crate::tables::daylight::{DAYLIGHT_COMPONENTS, DAYLIGHT_FIRST_NM, DAYLIGHT_STEP_NM};
-use crate::{Grid, Spectrum, SpectrumCsvError, read_columns};
+use crate::{
+    Grid, SampleRules, SamplesError, Spectrum, SpectrumCsvError, curves_from_samples, read_columns,
+};
 
 /// A named light: relative spectral power on [`Grid::FINE`], 300 to 830 nm.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,6 +25,9 @@ pub enum IlluminantError {
     /// The CSV text is not a spectrum.
     #[error(transparent)]
     Csv(#[from] SpectrumCsvError),
+    /// The samples are not a spectrum.
+    #[error(transparent)]
+    Samples(#[from] SamplesError),
     /// A power is below zero.
     #[error("power {found} at {wavelength_nm} nm, expected 0 or more")]
     Negative {
@@ -71,7 +76,23 @@ impl Illuminant {
     ///
     /// [`IlluminantError`] if the text is no spectrum or has no visible power.
     pub fn from_csv(name: &str, text: &str) -> Result<Self, IlluminantError> {
-        let [power] = read_columns(text, ["power"], false)?;
+        let [power] = read_columns(text, ["power"], SampleRules::LIGHT)?;
+        Self::from_spectrum(name, &power)
+    }
+
+    /// A light from samples of its relative power: wavelengths (nm) that ascend from 300 to 830 nm in
+    /// steps of at most 10 nm, and a power of 0 or more for each.
+    ///
+    /// # Errors
+    ///
+    /// [`IlluminantError`] if the samples are no spectrum or have no visible power.
+    pub fn from_samples(
+        name: &str,
+        wavelengths_nm: &[f64],
+        power: &[f64],
+    ) -> Result<Self, IlluminantError> {
+        let columns = [("power", power)];
+        let [power] = curves_from_samples(wavelengths_nm, columns, SampleRules::LIGHT)?;
         Self::from_spectrum(name, &power)
     }
 
@@ -208,6 +229,22 @@ mod tests {
         assert_eq!(
             Illuminant::named("F11").unwrap_err().to_string(),
             "unknown illuminant \"F11\", expected D65, D60, D55, D50, A, E, or a CSV file"
+        );
+    }
+
+    #[test]
+    fn samples_and_csv_text_make_the_same_light() {
+        let d50 = Illuminant::named("D50").unwrap();
+        let nm: Vec<f64> = Grid::FINE.wavelengths_nm().collect();
+        let sampled = Illuminant::from_samples("lamp", &nm, d50.power().values()).unwrap();
+        let rows = nm.iter().zip(d50.power().values()).map(|(nm, p)| format!("{nm},{p}\n"));
+        let text = "wavelength_nm,power\n".to_owned() + &rows.collect::<String>();
+        assert_eq!(sampled, Illuminant::from_csv("lamp", &text).unwrap());
+        assert_eq!(sampled.power(), d50.power());
+        let negative = vec![-1.0; nm.len()];
+        assert_eq!(
+            Illuminant::from_samples("lamp", &nm, &negative).unwrap_err().to_string(),
+            "sample 0: -1 in column \"power\", expected a value of 0 or more"
         );
     }
 

@@ -24,6 +24,14 @@ impl Matrix3 {
         ])
     }
 
+    /// The determinant.
+    pub fn determinant(self) -> f64 {
+        let [a, b, c] = self.0;
+        a[0] * (b[1] * c[2] - b[2] * c[1])
+            + a[1] * -(b[0] * c[2] - b[2] * c[0])
+            + a[2] * (b[0] * c[1] - b[1] * c[0])
+    }
+
     /// The inverse; `None` where the determinant is zero or not a number.
     pub fn inverse(self) -> Option<Self> {
         let m = self.0;
@@ -35,7 +43,7 @@ impl Matrix3 {
             [-minor(1, 2, 0, 2), minor(0, 2, 0, 2), -minor(0, 1, 0, 2)],
             [minor(1, 2, 0, 1), -minor(0, 2, 0, 1), minor(0, 1, 0, 1)],
         ];
-        let det = m[0][0] * adjugate[0][0] + m[0][1] * adjugate[1][0] + m[0][2] * adjugate[2][0];
+        let det = self.determinant();
         let usable = det.is_finite() && det != 0.0;
         usable.then(|| Self(adjugate.map(|row| row.map(|v| v / det))))
     }

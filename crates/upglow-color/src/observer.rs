@@ -1,17 +1,81 @@
-//! Standard observers.
+//! Observers: what an eye makes of light.
 
 use crate::tables::observer::{CIE_1931_2DEG, CIE_1931_2DEG_FIRST_NM};
-use crate::{Grid, Spectrum};
+use crate::{
+    Grid, Matrix3, SampleRules, SamplesError, Spectrum, SpectrumCsvError, curves_from_samples,
+    read_columns,
+};
 
-/// A set of color-matching functions.
+/// A set of color-matching functions x̄, ȳ, z̄: 0 or more, zero below 360 nm and wherever nobody
+/// measured them, and none a mixture of the others.
+///
+/// Their common scale is free, as Y = 1 is always the perfect diffuser; their ratios are not.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Observer {
-    name: &'static str,
+    name: String,
     /// x̄, ȳ, z̄ on [`Grid::FINE`].
     matching: [Spectrum; 3],
 }
 
+/// Why color-matching functions are none.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ObserverError {
+    /// No built-in observer has this name.
+    #[error("unknown observer {found:?}, expected {}, or a CSV file", Observer::NAMES.join(", "))]
+    Unknown {
+        /// The name given.
+        found: String,
+    },
+    /// The CSV text is no table of color-matching functions.
+    #[error(transparent)]
+    Csv(#[from] SpectrumCsvError),
+    /// The samples are no color-matching functions.
+    #[error(transparent)]
+    Samples(#[from] SamplesError),
+    /// A function is below zero, or not zero where nobody sees.
+    #[error("{column} is {found} at {wavelength_nm} nm, expected {expected}")]
+    Value {
+        /// Which function: x, y or z.
+        column: &'static str,
+        /// Where, nm.
+        wavelength_nm: f64,
+        /// Its value.
+        found: f64,
+        /// What it should be.
+        expected: &'static str,
+    },
+    /// One function is zero, or a mixture of the others: not three colors are told apart.
+    #[error("x, y and z tell no three colors apart, expected three different functions")]
+    Dependent,
+}
+
+/// The names of the functions in files and messages.
+const COLUMNS: [&str; 3] = ["x", "y", "z"];
+
+/// The least volume that the three functions, scaled to unit length, must span. The CIE's 2° and 10°
+/// observers span 0.6. Smaller lets matrices through that turn rounding into color; larger might
+/// refuse an eye that somebody measured.
+const LEAST_VOLUME: f64 = 1e-3;
+
 impl Observer {
+    /// The built-in observers.
+    pub const NAMES: [&str; 1] = ["cie-1931-2deg"];
+
+    /// The built-in observer of this name, in any case; the name that files state is taken as well.
+    ///
+    /// # Errors
+    ///
+    /// [`ObserverError::Unknown`] lists the names there are.
+    pub fn named(name: &str) -> Result<Self, ObserverError> {
+        let known = Self::cie_1931_2deg();
+        let is_known = |spelling: &str| name.eq_ignore_ascii_case(spelling);
+        if is_known(Self::NAMES[0]) || is_known(known.name()) {
+            return Ok(known);
+        }
+        Err(ObserverError::Unknown { found: name.into() })
+    }
+
     /// The CIE 1931 2° standard observer: measured from 360 to 830 nm, zero below.
     pub fn cie_1931_2deg() -> Self {
         let lead = (CIE_1931_2DEG_FIRST_NM - Grid::FINE.first_nm()) as usize;
@@ -22,12 +86,65 @@ impl Observer {
             }
             Spectrum::new(Grid::FINE, values).expect("the table is finite and fills the grid")
         });
-        Self { name: "CIE 1931 2°", matching }
+        Self { name: "CIE 1931 2°".into(), matching }
+    }
+
+    /// The observer in CSV text with the header `wavelength_nm,x,y,z`: at least 400 to 700 nm in steps
+    /// of at most 5 nm. It is zero beyond its lines; cells at either end of a column may be empty,
+    /// which counts as zero as well.
+    ///
+    /// # Errors
+    ///
+    /// [`ObserverError`] if the text is no table, or its functions are no observer's.
+    pub fn from_csv(name: &str, text: &str) -> Result<Self, ObserverError> {
+        Self::from_spectra(name, read_columns(text, COLUMNS, SampleRules::OBSERVER)?)
+    }
+
+    /// An observer from samples: wavelengths (nm) that ascend over at least 400 to 700 nm in steps of at
+    /// most 5 nm, and for each x̄, ȳ, z̄ of 0 or more, `[wavelength][x̄ ȳ z̄]`. It is zero beyond them;
+    /// not-a-number at either end of a function counts as zero as well.
+    ///
+    /// # Errors
+    ///
+    /// [`ObserverError`] if the samples are no observer's.
+    pub fn from_samples(
+        name: &str,
+        wavelengths_nm: &[f64],
+        matching: &[[f64; 3]],
+    ) -> Result<Self, ObserverError> {
+        let [x, y, z] = [0, 1, 2].map(|k| matching.iter().map(|v| v[k]).collect::<Vec<_>>());
+        let columns = [(COLUMNS[0], &x[..]), (COLUMNS[1], &y), (COLUMNS[2], &z)];
+        let curves = curves_from_samples(wavelengths_nm, columns, SampleRules::OBSERVER)?;
+        Self::from_spectra(name, curves)
+    }
+
+    /// An observer from its three functions.
+    ///
+    /// # Errors
+    ///
+    /// [`ObserverError`] if a function is negative or not zero below 360 nm, or is zero or a mixture of
+    /// the others.
+    pub fn from_spectra(name: &str, matching: [Spectrum; 3]) -> Result<Self, ObserverError> {
+        let matching = matching.map(|curve| curve.resampled(Grid::FINE));
+        for (column, curve) in COLUMNS.into_iter().zip(&matching) {
+            check_values(column, curve)?;
+        }
+        let volume = volume(&matching);
+        // Not a number where a function is zero.
+        if volume.is_nan() || volume < LEAST_VOLUME {
+            return Err(ObserverError::Dependent);
+        }
+        Ok(Self { name: name.into(), matching })
     }
 
     /// The name that files state.
     pub fn name(&self) -> &str {
-        self.name
+        &self.name
+    }
+
+    /// x̄, ȳ, z̄ on [`Grid::FINE`].
+    pub fn matching(&self) -> &[Spectrum; 3] {
+        &self.matching
     }
 
     /// x̄, ȳ, z̄ at every wavelength of `grid`, `[wavelength][x̄ ȳ z̄]`.
@@ -39,5 +156,131 @@ impl Observer {
 impl Default for Observer {
     fn default() -> Self {
         Self::cie_1931_2deg()
+    }
+}
+
+fn check_values(column: &'static str, curve: &Spectrum) -> Result<(), ObserverError> {
+    for (wavelength_nm, &found) in curve.grid().wavelengths_nm().zip(curve.values()) {
+        let expected = match found {
+            _ if found < 0.0 => "0 or more",
+            _ if found > 0.0 && wavelength_nm < SampleRules::FIRST_SEEN_NM => "0 below 360 nm",
+            _ => continue,
+        };
+        return Err(ObserverError::Value { column, wavelength_nm, found, expected });
+    }
+    Ok(())
+}
+
+/// Volume of the parallelepiped of the functions scaled to unit length: 1 where none overlaps, 0 where
+/// one is a mixture of the others.
+fn volume(matching: &[Spectrum; 3]) -> f64 {
+    let dot = |a: &Spectrum, b: &Spectrum| -> f64 {
+        a.values().iter().zip(b.values()).map(|(a, b)| a * b).sum()
+    };
+    let lengths = matching.each_ref().map(|curve| dot(curve, curve).sqrt());
+    let cosine = |i: usize, j: usize| dot(&matching[i], &matching[j]) / (lengths[i] * lengths[j]);
+    let gram = Matrix3([0, 1, 2].map(|i| [0, 1, 2].map(|j| cosine(i, j))));
+    gram.determinant().sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The built-in table from `first_nm` to `last_nm` by `step`.
+    fn table(first_nm: u32, last_nm: u32, step: usize) -> (Vec<f64>, Vec<[f64; 3]>) {
+        let known = Observer::default();
+        let nm: Vec<f64> = (first_nm..=last_nm).step_by(step).map(f64::from).collect();
+        let rows = nm.iter().map(|&nm| known.matching.each_ref().map(|m| m.at(nm))).collect();
+        (nm, rows)
+    }
+
+    #[test]
+    fn the_published_table_is_the_same_from_samples_and_from_text() {
+        let (nm, rows) = table(360, 830, 1);
+        let sampled = Observer::from_samples("CIE 1931 2°", &nm, &rows).unwrap();
+        assert_eq!(sampled, Observer::default());
+        let lines = nm.iter().zip(&rows).map(|(nm, [x, y, z])| format!("{nm},{x},{y},{z}\n"));
+        let text = "wavelength_nm,x,y,z\n".to_owned() + &lines.collect::<String>();
+        assert_eq!(Observer::from_csv("CIE 1931 2°", &text).unwrap(), Observer::default());
+    }
+
+    #[test]
+    fn beyond_its_samples_an_observer_sees_nothing() {
+        let (nm, rows) = table(380, 780, 5);
+        let short = Observer::from_samples("short", &nm, &rows).unwrap();
+        let seen = short.on(Grid::FINE);
+        let zero = |nm: usize| seen[nm - 300] == [0.0; 3];
+        assert!(zero(379) && zero(781) && !zero(380) && !zero(780));
+    }
+
+    #[test]
+    fn zeros_below_360_nm_stay_zeros_when_lines_are_drawn() {
+        let (nm, rows) = table(300, 830, 5);
+        let from_300 = Observer::from_samples("from 300", &nm, &rows).unwrap();
+        assert!(from_300.on(Grid::FINE)[..60].iter().all(|v| *v == [0.0; 3]));
+        assert_eq!(from_300.on(Grid::FIT), Observer::default().on(Grid::FIT));
+    }
+
+    #[test]
+    fn names_are_found_in_any_case_and_others_listed() {
+        for name in ["CIE-1931-2deg", "cie 1931 2°"] {
+            assert_eq!(Observer::named(name), Ok(Observer::default()));
+        }
+        assert_eq!(
+            Observer::named("hawk").unwrap_err().to_string(),
+            "unknown observer \"hawk\", expected cie-1931-2deg, or a CSV file"
+        );
+    }
+
+    #[test]
+    fn each_fault_is_named() {
+        let message = |edit: fn(&mut Vec<f64>, &mut Vec<[f64; 3]>)| {
+            let (mut nm, mut rows) = table(350, 830, 5);
+            edit(&mut nm, &mut rows);
+            Observer::from_samples("eye", &nm, &rows).unwrap_err().to_string()
+        };
+        let known: [(String, &str); 7] = [
+            (
+                message(|_, rows| rows[20][1] = -0.1),
+                "sample 20: -0.1 in column \"y\", expected a value of 0 or more",
+            ),
+            (
+                message(|_, rows| rows[1][2] = 0.1),
+                "sample 1: 0.1 in column \"z\" at 355 nm, expected 0 below 360 nm",
+            ),
+            (
+                message(|nm, _| nm[8] = 384.0),
+                "sample 8: 384 nm after 385 nm, expected ascending wavelengths",
+            ),
+            (
+                message(|nm, rows| (nm.truncate(70), rows.truncate(70)).1),
+                "covers 350 to 695 nm, expected at least 400 to 700 nm",
+            ),
+            (
+                message(|_, rows| rows.truncate(9)),
+                "9 samples in column \"x\", expected 97, one for each wavelength",
+            ),
+            (
+                message(|_, rows| rows.iter_mut().for_each(|v| v[2] = 0.0)),
+                "x, y and z tell no three colors apart, expected three different functions",
+            ),
+            (
+                message(|_, rows| rows.iter_mut().for_each(|v| v[2] = v[0] + v[1])),
+                "x, y and z tell no three colors apart, expected three different functions",
+            ),
+        ];
+        for (found, expected) in known {
+            assert!(found.starts_with(expected), "{found}");
+        }
+        let flat = Spectrum::new(Grid::FINE, vec![-1.0; Grid::FINE.len()]).unwrap();
+        let refused = Observer::from_spectra("eye", [flat.clone(), flat.clone(), flat]);
+        assert_eq!(refused.unwrap_err().to_string(), "x is -1 at 300 nm, expected 0 or more");
+    }
+
+    #[test]
+    fn the_standard_observer_spans_the_volume_that_the_limit_is_measured_by() {
+        let found = volume(&Observer::default().matching);
+        assert!((0.55..0.65).contains(&found), "{found}");
     }
 }

@@ -1,6 +1,7 @@
 //! Sampled curves, and the CSV files they come in.
 
-use crate::Grid;
+use crate::samples::{Row, Rows};
+use crate::{Grid, Place, SampleRules, SamplesError};
 
 /// A curve over wavelength: samples on a grid, straight lines between them, zero outside.
 #[derive(Clone, Debug, PartialEq)]
@@ -145,92 +146,15 @@ pub enum SpectrumCsvError {
         /// What the cell holds.
         found: String,
     },
-    /// A sample is below zero.
-    #[error("line {line}: {found} in column {column:?}, expected a value of 0 or more")]
-    Negative {
-        /// Line number.
-        line: usize,
-        /// Header of the column.
-        column: String,
-        /// What the cell holds.
-        found: f64,
-    },
-    /// Wavelengths do not rise.
-    #[error("line {line}: {found_nm} nm after {previous_nm} nm, expected ascending wavelengths")]
-    Order {
-        /// Line number.
-        line: usize,
-        /// Wavelength there, nm.
-        found_nm: f64,
-        /// Wavelength before it, nm.
-        previous_nm: f64,
-    },
-    /// Two neighbors are further apart than the measurement can stand for.
-    #[error(
-        "line {line}: {found_nm} nm after {previous_nm} nm leaves a gap, expected steps of at most {limit_nm} nm"
-    )]
-    Gap {
-        /// Line number.
-        line: usize,
-        /// Wavelength there, nm.
-        found_nm: f64,
-        /// Wavelength before it, nm.
-        previous_nm: f64,
-        /// The widest step allowed, nm.
-        limit_nm: f64,
-    },
-    /// A cell is empty although there are samples before and after it.
-    #[error("line {line}: empty cell in column {column:?} between measured ones, expected a value")]
-    Hole {
-        /// Line number.
-        line: usize,
-        /// Header of the column.
-        column: String,
-    },
-    /// The file does not reach over the range asked for.
-    #[error("covers {first_nm} to {last_nm} nm, expected at least {from_nm} to {to_nm} nm{hint}")]
-    Range {
-        /// First wavelength in the file, nm.
-        first_nm: f64,
-        /// Last wavelength in the file, nm.
-        last_nm: f64,
-        /// First wavelength needed, nm.
-        from_nm: f64,
-        /// Last wavelength needed, nm.
-        to_nm: f64,
-        /// What to do about it, or nothing.
-        hint: &'static str,
-    },
-    /// There are no samples.
-    #[error("no samples, expected a line for each wavelength")]
-    Empty,
+    /// The numbers are no curves.
+    #[error(transparent)]
+    Samples(#[from] SamplesError),
 }
-
-/// How a CSV file of curves is to be read.
-#[derive(Clone, Copy, Debug)]
-struct Rules {
-    /// Widest step between neighbors, nm. Larger accepts files in which a peak can hide between
-    /// two samples; smaller refuses the 10 nm in which lamps, or 5 nm in which dyes, are published.
-    gap_limit_nm: f64,
-    /// What an empty cell means.
-    empty_is_zero: bool,
-    /// What to say where the range is too short.
-    range_hint: &'static str,
-}
-
-const CURVE_RULES: Rules = Rules { gap_limit_nm: 10.0, empty_is_zero: false, range_hint: "" };
-const MEASURED_RULES: Rules = Rules {
-    gap_limit_nm: 5.0,
-    empty_is_zero: true,
-    range_hint: ": leave cells empty where it was not measured",
-};
 
 /// Reads the curves named `columns` from CSV text whose header is `wavelength_nm,<columns>`.
 ///
-/// Lines that start with `#` are comments. Wavelengths are nm, ascend, cover 300 to 830 nm and are
-/// at most 10 nm apart; samples are 0 or more. With `empty_is_zero` steps are at most 5 nm, and
-/// empty cells at either end of a column mean "not measured there" and count as zero. The curves
-/// come back on [`Grid::FINE`].
+/// Lines that start with `#` are comments. An empty cell is an absent sample, where the rules allow
+/// any. The curves come back on [`Grid::FINE`](crate::Grid::FINE).
 ///
 /// # Errors
 ///
@@ -238,9 +162,8 @@ const MEASURED_RULES: Rules = Rules {
 pub fn read_columns<const N: usize>(
     text: &str,
     columns: [&str; N],
-    empty_is_zero: bool,
+    rules: SampleRules,
 ) -> Result<[Spectrum; N], SpectrumCsvError> {
-    let rules = if empty_is_zero { MEASURED_RULES } else { CURVE_RULES };
     let mut lines = (1..).zip(text.lines()).filter(|(_, l)| !l.starts_with('#') && !l.is_empty());
     let header = lines.next().map_or("", |(_, l)| l).trim_start_matches('\u{feff}').trim();
     let expected = format!("wavelength_nm,{}", columns.join(","));
@@ -250,33 +173,18 @@ pub fn read_columns<const N: usize>(
             expected,
         });
     }
-    let mut rows: Vec<Row<N>> = Vec::new();
+    let mut rows = Rows::new(columns, rules);
     for (line, text) in lines {
-        let row = read_row(line, text, columns, rules)?;
-        if let Some(previous) = rows.last() {
-            check_step(line, previous.nm, row.nm, rules.gap_limit_nm)?;
-        }
-        rows.push(row);
+        rows.push(read_row(line, text, columns, rows.has_blank_ends())?)?;
     }
-    check_range(&rows, rules)?;
-    for (k, column) in columns.into_iter().enumerate() {
-        check_holes(&rows, k, column)?;
-    }
-    Ok(std::array::from_fn(|k| sample_fine(&rows, k)))
-}
-
-/// One line of a file; `None` where a cell is empty.
-struct Row<const N: usize> {
-    line: usize,
-    nm: f64,
-    cells: [Option<f64>; N],
+    Ok(rows.into_curves()?)
 }
 
 fn read_row<const N: usize>(
     line: usize,
     text: &str,
     columns: [&str; N],
-    rules: Rules,
+    has_blanks: bool,
 ) -> Result<Row<N>, SpectrumCsvError> {
     let texts: Vec<&str> = text.split(',').map(str::trim).collect();
     if texts.len() != N + 1 {
@@ -285,16 +193,11 @@ fn read_row<const N: usize>(
     let nm = read_number(line, "wavelength_nm", texts[0])?;
     let mut cells = [None; N];
     for ((cell, text), column) in cells.iter_mut().zip(&texts[1..]).zip(columns) {
-        if text.is_empty() && rules.empty_is_zero {
-            continue;
+        if !(text.is_empty() && has_blanks) {
+            *cell = Some(read_number(line, column, text)?);
         }
-        let found = read_number(line, column, text)?;
-        if found < 0.0 {
-            return Err(SpectrumCsvError::Negative { line, column: column.into(), found });
-        }
-        *cell = Some(found);
     }
-    Ok(Row { line, nm, cells })
+    Ok(Row { place: Place::Line(line), nm, cells })
 }
 
 fn read_number(line: usize, column: &str, cell: &str) -> Result<f64, SpectrumCsvError> {
@@ -303,64 +206,6 @@ fn read_number(line: usize, column: &str, cell: &str) -> Result<f64, SpectrumCsv
         column: column.into(),
         found: cell.chars().take(40).collect(),
     })
-}
-
-fn check_step(
-    line: usize,
-    previous_nm: f64,
-    found_nm: f64,
-    limit_nm: f64,
-) -> Result<(), SpectrumCsvError> {
-    if found_nm <= previous_nm {
-        return Err(SpectrumCsvError::Order { line, found_nm, previous_nm });
-    }
-    if found_nm - previous_nm > limit_nm {
-        return Err(SpectrumCsvError::Gap { line, found_nm, previous_nm, limit_nm });
-    }
-    Ok(())
-}
-
-fn check_range<const N: usize>(rows: &[Row<N>], rules: Rules) -> Result<(), SpectrumCsvError> {
-    let (Some(first), Some(last)) = (rows.first(), rows.last()) else {
-        return Err(SpectrumCsvError::Empty);
-    };
-    let (first_nm, last_nm) = (first.nm, last.nm);
-    let (from_nm, to_nm) = (f64::from(Grid::FINE.first_nm()), f64::from(Grid::FINE.last_nm()));
-    if first_nm > from_nm || last_nm < to_nm {
-        let hint = rules.range_hint;
-        return Err(SpectrumCsvError::Range { first_nm, last_nm, from_nm, to_nm, hint });
-    }
-    Ok(())
-}
-
-fn check_holes<const N: usize>(
-    rows: &[Row<N>],
-    k: usize,
-    column: &str,
-) -> Result<(), SpectrumCsvError> {
-    let measured = |row: &Row<N>| row.cells[k].is_some();
-    let first = rows.iter().position(measured).unwrap_or(0);
-    let last = rows.iter().rposition(measured).unwrap_or(0);
-    match rows[first..=last].iter().find(|row| !measured(row)) {
-        Some(row) if first < last => {
-            Err(SpectrumCsvError::Hole { line: row.line, column: column.into() })
-        }
-        _ => Ok(()),
-    }
-}
-
-/// Column `k` at every wavelength of [`Grid::FINE`], which the rows cover.
-fn sample_fine<const N: usize>(rows: &[Row<N>], k: usize) -> Spectrum {
-    let mut above = 1;
-    let values = Grid::FINE.wavelengths_nm().map(|nm| {
-        while above + 1 < rows.len() && rows[above].nm < nm {
-            above += 1;
-        }
-        let (low, high) = (&rows[above - 1], &rows[above]);
-        let fraction = (nm - low.nm) / (high.nm - low.nm);
-        low.cells[k].unwrap_or(0.0) * (1.0 - fraction) + high.cells[k].unwrap_or(0.0) * fraction
-    });
-    Spectrum { grid: Grid::FINE, values: values.collect() }
 }
 
 #[cfg(test)]
@@ -373,7 +218,7 @@ mod tests {
     }
 
     fn read(text: &str) -> Result<Spectrum, SpectrumCsvError> {
-        read_columns(text, ["power"], false).map(|[s]| s)
+        read_columns(text, ["power"], SampleRules::LIGHT).map(|[s]| s)
     }
 
     #[test]
@@ -442,7 +287,7 @@ mod tests {
         assert_eq!(message(""), "header \"\", expected \"wavelength_nm,power\"");
         assert_eq!(
             message("wavelength_nm,power\n"),
-            "no samples, expected a line for each wavelength"
+            "no samples, expected one for each wavelength"
         );
         assert_eq!(message("wavelength_nm,power\n300\n"), "line 2: 1 cells, expected 2");
     }

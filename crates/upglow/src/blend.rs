@@ -5,7 +5,8 @@ use fearless_simd::{Level, Simd, dispatch, f32x4, f32x8, i32x4};
 
 use crate::curve_table::{Curves, DyeNumbers, whole};
 use crate::inverse_root::{twice_inverse_root, twice_inverse_root8};
-use crate::lookup_table::{LookupTable, PackedNode, greater_of, to_single};
+use crate::lookup_table::{LookupTable, PackedNode, greater_of};
+use crate::rounding::to_single;
 use crate::{Accounting, Model};
 
 /// The four materials around a color, mixed by weight: a [`crate::Mixture`] for inner loops.

@@ -5,8 +5,8 @@ use fearless_simd::{Level, Simd, dispatch};
 
 use crate::blend::{Blend, PerLobe, sum, with_baseline};
 use crate::curve_table::{DyeNumbers, whole};
-use crate::lookup_table::to_single;
 use crate::material::Lobe;
+use crate::rounding::to_single;
 use crate::{Accounting, Draw, Fluorescence, Model, Sample};
 
 impl<'t> Blend<'t> {

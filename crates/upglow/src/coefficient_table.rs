@@ -1,9 +1,9 @@
 //! Tables of sigmoid coefficients as other renderers read them: `.coeff` files.
 
-use upglow_color::{Contract, Grid, LinearRgb, Matrix3};
+use upglow_color::{Contract, Grid, LinearRgb};
 
 use crate::Sigmoid;
-use crate::lookup_table::to_single;
+use crate::rounding::{to_single, whole};
 
 /// Reflectances for the RGB colors of a unit cube, in the layout that `rgb2spec` defined and that
 /// Mitsuba 3, pbrt-v4 and colour-science read.
@@ -269,15 +269,9 @@ impl Integrator {
                 rgb_weights[k][below + 1] += fraction * rgb[k];
             }
         }
-        let primary = |k: usize| {
-            let mut rgb = [0.0; 3];
-            rgb[k] = 1.0;
-            colorimetry.xyz_from_rgb(LinearRgb(rgb)).0
-        };
-        let xyz_from_rgb = Matrix3::from_columns([0, 1, 2].map(primary));
         Self {
             rgb_weights: rgb_weights.map(|w| w.map(to_single).to_vec()),
-            xyz_from_rgb: xyz_from_rgb.0.map(|row| row.map(to_single)),
+            xyz_from_rgb: colorimetry.xyz_from_rgb_matrix().0.map(|row| row.map(to_single)),
             white: colorimetry.white().0.map(to_single),
         }
     }
@@ -356,16 +350,6 @@ fn sigmoid_of([c0, c1, c2]: [f64; 3]) -> Sigmoid {
 
 fn smooth_step(x: f64) -> f64 {
     x * x * (3.0 - 2.0 * x)
-}
-
-/// The whole part of a position in a table.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "the position is at least 0 and its fraction is meant to go"
-)]
-fn whole(position: f64) -> usize {
-    position as usize
 }
 
 #[cfg(test)]

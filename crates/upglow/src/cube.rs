@@ -3,7 +3,7 @@
 use upglow_color::{Contract, LinearRgb};
 
 use crate::interpolation::tetrahedron;
-use crate::lookup_table::to_single;
+use crate::rounding::to_single;
 use crate::{Edge, Fluorescence, Interpolation, Material, Mixture, Model};
 
 /// Materials for every node of a regular grid over linear RGB 0..=1, in single precision.

@@ -5,15 +5,14 @@
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::fmt::Display;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use safetensors::{Dtype, SafeTensors, View};
 use sha2::{Digest, Sha256};
 use upglow_color::Grid;
 
-use crate::header::{Curves, ENTRY, Header};
-use crate::{Cube, CubeError, Model, Node};
+use crate::header::{Curves, ENTRY, Header, holds_observer};
+use crate::{AsideError, Cube, CubeError, Model, Node, write_whole};
 
 /// Why a file is not a cube that this program reads.
 #[derive(Debug, thiserror::Error)]
@@ -29,12 +28,12 @@ pub enum ReadCubeError {
     #[error("no `upglow` entry in the header, expected a cube made by upglow")]
     NotACube,
     /// The file is of another version.
-    #[error("format version {found}, expected {expected}")]
+    #[error("format version {found}, expected 1 to {newest}")]
     Version {
         /// Version of the file.
         found: u32,
-        /// Version that this program reads.
-        expected: u32,
+        /// The newest version that this program reads.
+        newest: u32,
     },
     /// The header is not what this version writes.
     #[error("header: {0}")]
@@ -110,6 +109,7 @@ const DYE: &str = "dye";
 const FLUORESCENCE: &str = "fluorescence";
 const DE2000: &str = "de2000";
 const ILLUMINANT: &str = "illuminant";
+const OBSERVER: &str = "observer";
 const DYE_CURVES: &str = "dye_curves";
 const CHECKSUM: &str = "sha256";
 
@@ -173,7 +173,7 @@ impl Cube {
     /// [`WriteCubeError`] if the container refuses, which it does for no valid cube.
     pub fn to_bytes(&self) -> Result<Vec<u8>, WriteCubeError> {
         let mut tensors = self.tensors();
-        let header = self.header_json();
+        let header = self.header_of(&tensors);
         let content = tensors.iter().map(|t| (t.name, t.dtype, &t.shape[..], &t.bytes[..]));
         let checksum = checksum(&header, content);
         tensors.push(Tensor::of_bytes(CHECKSUM, vec![checksum.len()], checksum));
@@ -184,7 +184,11 @@ impl Cube {
 
     /// What the cube's file says of itself, as JSON: contract, model, fit, without the curves.
     pub fn header_json(&self) -> String {
-        let names = self.tensors().iter().map(|t| t.name.to_owned()).collect();
+        self.header_of(&self.tensors())
+    }
+
+    fn header_of(&self, tensors: &[Tensor]) -> String {
+        let names = tensors.iter().map(|t| t.name.to_owned()).collect();
         serde_json::to_string(&Header::of(self, names)).expect("plain data")
     }
 
@@ -194,7 +198,10 @@ impl Cube {
     ///
     /// [`WriteCubeError`] if the path cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), WriteCubeError> {
-        write_whole(path, &self.to_bytes()?)
+        write_whole(path, &self.to_bytes()?).map_err(|error| match error {
+            AsideError::NotAFile => WriteCubeError::NotAFile { path: path.into() },
+            AsideError::Io(error) => error.into(),
+        })
     }
 
     fn tensors(&self) -> Vec<Tensor> {
@@ -214,6 +221,11 @@ impl Cube {
                 self.contract().illuminant.power().values().iter(),
             ),
         ];
+        if holds_observer(self.contract()) {
+            let matching = self.contract().observer.matching();
+            let samples = matching.iter().flat_map(|curve| curve.values());
+            tensors.push(Tensor::of_doubles(OBSERVER, vec![matching.len(), fine], samples));
+        }
         let fluorescence = || nodes().flat_map(|node| node.fluorescence);
         if !matches!(self.model(), Model::Reflectance) {
             let shape = vec![n, n, n, 3];
@@ -257,8 +269,8 @@ impl Cube {
         if !(least..=most).contains(&n) {
             return Err(CubeError::Resolution { found: n }.into());
         }
-        let curves = read_curves(&file, header.model.dye_count())?;
-        let contract = header.contract.to_contract(curves.illuminant)?;
+        let curves = read_curves(&file, &header)?;
+        let contract = header.contract.to_contract(curves.illuminant, curves.observer)?;
         let model = header.model.to_model(curves.dyes)?;
         let nodes = read_nodes(&file, n, &model)?;
         Ok(Self::new(contract, model, header.fit.to_record(), n, nodes)?)
@@ -326,16 +338,27 @@ fn triples(bytes: &[u8]) -> Vec<[f32; 3]> {
     singles(bytes).collect::<Vec<_>>().as_chunks().0.to_vec()
 }
 
-fn read_curves(file: &SafeTensors<'_>, dyes: usize) -> Result<Curves, ReadCubeError> {
+fn read_curves(file: &SafeTensors<'_>, header: &Header) -> Result<Curves, ReadCubeError> {
     let fine = Grid::FINE.len();
     let illuminant = doubles(tensor(file, ILLUMINANT, Dtype::F64, &[fine])?);
-    if dyes == 0 {
-        return Ok(Curves { illuminant, dyes: Vec::new() });
+    let observer = if header.holds_observer() {
+        let samples = doubles(tensor(file, OBSERVER, Dtype::F64, &[3, fine])?);
+        Some([0, 1, 2].map(|k| samples[k * fine..(k + 1) * fine].to_vec()))
+    } else {
+        None
+    };
+    Ok(Curves { illuminant, observer, dyes: read_dyes(file, header.model.dye_count())? })
+}
+
+/// Absorption and emission of each dye.
+fn read_dyes(file: &SafeTensors<'_>, count: usize) -> Result<Vec<[Vec<f64>; 2]>, ReadCubeError> {
+    if count == 0 {
+        return Ok(Vec::new());
     }
-    let samples = doubles(tensor(file, DYE_CURVES, Dtype::F64, &[dyes, 2, fine])?);
+    let fine = Grid::FINE.len();
+    let samples = doubles(tensor(file, DYE_CURVES, Dtype::F64, &[count, 2, fine])?);
     let pairs = samples.chunks_exact(2 * fine);
-    let dyes = pairs.map(|pair| [pair[..fine].to_vec(), pair[fine..].to_vec()]).collect();
-    Ok(Curves { illuminant, dyes })
+    Ok(pairs.map(|pair| [pair[..fine].to_vec(), pair[fine..].to_vec()]).collect())
 }
 
 fn read_nodes(file: &SafeTensors<'_>, n: usize, model: &Model) -> Result<Vec<Node>, ReadCubeError> {
@@ -361,42 +384,12 @@ fn read_nodes(file: &SafeTensors<'_>, n: usize, model: &Model) -> Result<Vec<Nod
         .collect())
 }
 
-/// Writes a file that appears whole or not at all: aside, then renamed.
-///
-/// # Errors
-///
-/// [`WriteCubeError`] if the path is no file's or cannot be written; nothing is left behind.
-pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), WriteCubeError> {
-    if path.file_name().is_none() || path.metadata().is_ok_and(|found| !found.is_file()) {
-        return Err(WriteCubeError::NotAFile { path: path.into() });
-    }
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut aside = tempfile::Builder::new().prefix(".upglow-").tempfile_in(folder)?;
-    aside.write_all(bytes)?;
-    aside.as_file().sync_all()?;
-    make_readable(aside.path())?;
-    aside.persist(path).map_err(|e| e.error)?;
-    Ok(())
-}
-
-/// Gives a file the permissions that any new file has; temporary ones are private.
-#[cfg(unix)]
-fn make_readable(path: &Path) -> std::io::Result<()> {
-    use std::os::unix::fs::PermissionsExt;
-    std::fs::set_permissions(path, std::fs::Permissions::from_mode(0o644))
-}
-
-#[cfg(not(unix))]
-fn make_readable(_path: &Path) -> std::io::Result<()> {
-    Ok(())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::{DyeModel, DyeOptions, DyeSet, FitRecord};
     use proptest::prelude::*;
-    use upglow_color::Contract;
+    use upglow_color::{Contract, Observer, Spectrum};
 
     fn cube() -> Cube {
         let set = DyeSet::named("open8").unwrap();
@@ -419,6 +412,38 @@ mod tests {
         let back = Cube::from_bytes(&bytes).unwrap();
         assert_eq!(back, cube);
         assert_eq!(back.to_bytes().unwrap(), bytes);
+    }
+
+    /// A cube of the standard observer with samples edited by their index and value.
+    fn with_observer(edit: impl Fn(usize, f64) -> f64) -> Cube {
+        let mut contract = Contract::default();
+        let curve = |curve: &Spectrum| {
+            let values = curve.values().iter().enumerate().map(|(i, &v)| edit(i, v)).collect();
+            Spectrum::new(Grid::FINE, values).unwrap()
+        };
+        let matching = contract.observer.matching().each_ref().map(curve);
+        contract.observer = Observer::from_spectra("glasses", matching).unwrap();
+        let (model, fit, nodes) =
+            (cube().model().clone(), cube().fit().clone(), cube().nodes().to_vec());
+        Cube::new(contract, model, fit, 3, nodes).unwrap()
+    }
+
+    #[test]
+    fn a_cube_of_another_observer_survives_its_file() {
+        let cube = with_observer(|_, value| 0.99 * value);
+        let bytes = cube.to_bytes().unwrap();
+        let back = Cube::from_bytes(&bytes).unwrap();
+        assert_eq!(back, cube);
+        assert_eq!(back.contract().observer.name(), "glasses");
+        assert_eq!(back.to_bytes().unwrap(), bytes);
+    }
+
+    #[test]
+    fn only_a_cube_of_another_observer_is_of_the_second_version() {
+        assert!(cube().header_json().contains("\"format_version\":1,"));
+        let other = with_observer(|i, value| if i == 100 { 1.5 * value } else { value });
+        assert!(other.header_json().contains("\"format_version\":2,"));
+        assert!(other.header_json().contains("\"observer\""));
     }
 
     #[test]
@@ -448,8 +473,7 @@ mod tests {
     fn with_header(edit: impl Fn(&str) -> String) -> Result<Cube, ReadCubeError> {
         let cube = cube();
         let mut tensors = cube.tensors();
-        let names = tensors.iter().map(|t| t.name.to_owned()).collect();
-        let header = edit(&serde_json::to_string(&Header::of(&cube, names)).unwrap());
+        let header = edit(&cube.header_of(&tensors));
         let content = tensors.iter().map(|t| (t.name, t.dtype, &t.shape[..], &t.bytes[..]));
         let sum = checksum(&header, content);
         tensors.push(Tensor::of_bytes(CHECKSUM, vec![sum.len()], sum));
@@ -470,9 +494,14 @@ mod tests {
         };
         assert_eq!(with_header(str::to_owned).unwrap(), cube());
         assert_eq!(
-            message("\"format_version\":1", "\"format_version\":2"),
-            "format version 2, expected 1"
+            message("\"format_version\":1", "\"format_version\":3"),
+            "format version 3, expected 1 to 2"
         );
+        assert_eq!(
+            message("\"format_version\":1", "\"format_version\":2"),
+            "tensor observer is absent, expected F64 [3, 531]"
+        );
+        assert!(message("CIE 1931 2°", "hawk").starts_with("header field observer is \"hawk\","));
         assert_eq!(
             message("\"resolution\":3", "\"resolution\":100000"),
             "resolution 100000, expected 2 to 256"
@@ -499,11 +528,10 @@ mod tests {
     }
 
     #[test]
-    fn a_failed_write_leaves_nothing() {
+    fn a_cube_is_not_written_over_a_folder() {
         let folder = tempfile::tempdir().unwrap();
-        let error = write_whole(folder.path(), b"x").unwrap_err().to_string();
-        assert!(error.ends_with("is not a file, expected a path to write a file at"), "{error}");
-        assert!(write_whole(&folder.path().join("no/such/folder/x"), b"x").is_err());
-        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+        let error = cube().write(folder.path()).unwrap_err().to_string();
+        let expected = "is not a file, expected a path to write a file at";
+        assert_eq!(error, format!("{} {expected}", folder.path().display()));
     }
 }

@@ -5,8 +5,9 @@ use fearless_simd::{Simd, f32x4, i32x4};
 use upglow_color::{Grid, Spectrum};
 
 use crate::blend::transposed;
-use crate::lookup_table::{smaller_of, to_single};
+use crate::lookup_table::smaller_of;
 use crate::quantile_table::QuantileTable;
+use crate::rounding::to_single;
 use crate::{DyeModel, Model};
 
 /// The range of [`Grid::FINE`], whose step is 1 nm.

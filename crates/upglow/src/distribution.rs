@@ -3,6 +3,7 @@
 use upglow_color::Spectrum;
 
 use crate::Accounting;
+use crate::rounding::whole;
 
 /// Entries of the table that starts a search. More take room in the caches; fewer leave more bins
 /// of 1 nm to walk through.
@@ -163,16 +164,6 @@ fn last_at_most(ascending: &[f64], target: f64) -> usize {
 
 fn guide(u: f64) -> usize {
     whole(u * GUIDES as f64).min(GUIDES - 1)
-}
-
-/// The whole part; 0 for what is negative or no number.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "the fraction is meant to go, and callers bound the rest"
-)]
-fn whole(position: f64) -> usize {
-    position as usize
 }
 
 #[cfg(test)]

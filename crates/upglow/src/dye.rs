@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use upglow_color::{
-    Grid, MeasuredDye, Observer, Spectrum, SpectrumCsvError, Xyz, dye_set, dye_set_names,
-    read_columns,
+    Grid, MeasuredDye, Observer, SampleRules, Spectrum, SpectrumCsvError, Xyz, dye_set,
+    dye_set_names, read_columns,
 };
 
 /// A ring of measured dyes: neighbors can be mixed, the last is beside the first.
@@ -184,7 +184,7 @@ fn read_text(path: &Path) -> Result<String, DyeSetError> {
 
 fn read_dye(path: &Path, yields: &[(String, f64)]) -> Result<MeasuredDye, DyeSetError> {
     let text = read_text(path)?;
-    let [absorption, emission] = read_columns(&text, ["absorption", "emission"], true)
+    let [absorption, emission] = read_columns(&text, ["absorption", "emission"], SampleRules::DYE)
         .map_err(|source| DyeSetError::Csv { path: path.into(), source })?;
     let file = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
     let quantum_yield = yields.iter().find(|(listed, _)| *listed == file).map(|(_, q)| *q);

@@ -10,8 +10,12 @@ use crate::{AnalyticModel, Cube, DyeModel, DyeOptions, DyeSet, FitRecord, Model,
 /// Name of the file's only metadata entry.
 pub(crate) const ENTRY: &str = "upglow";
 
-/// Version of the file format that this program writes and reads.
-const FORMAT_VERSION: u32 = 1;
+/// Versions of the file format that this program reads. It writes the first that can say what the cube
+/// holds, so that older programs read all they can understand.
+const FORMAT_VERSIONS: [u32; 2] = [1, WITH_OBSERVER];
+
+/// The first version that holds color-matching functions; before, they are CIE 1931 2°.
+const WITH_OBSERVER: u32 = 2;
 
 const NODE_AXES: &str = "[blue][green][red]; node i of n is i / (n - 1), linear";
 
@@ -84,8 +88,15 @@ pub(crate) struct FitHeader {
 pub(crate) struct Curves {
     /// Power of the illuminant on [`Grid::FINE`].
     pub(crate) illuminant: Vec<f64>,
+    /// Color-matching functions on [`Grid::FINE`], where the file holds any.
+    pub(crate) observer: Option<[Vec<f64>; 3]>,
     /// Absorption and emission of each dye on [`Grid::FINE`].
     pub(crate) dyes: Vec<[Vec<f64>; 2]>,
+}
+
+/// Whether a cube's file must hold the color-matching functions.
+pub(crate) fn holds_observer(contract: &Contract) -> bool {
+    contract.observer != Observer::cie_1931_2deg()
 }
 
 const fn grid_numbers(grid: Grid) -> [u32; 3] {
@@ -96,7 +107,7 @@ impl Header {
     pub(crate) fn of(cube: &Cube, tensors: Vec<String>) -> Self {
         Self {
             format: "upglow cube".into(),
-            format_version: FORMAT_VERSION,
+            format_version: if holds_observer(cube.contract()) { WITH_OBSERVER } else { 1 },
             upglow_version: env!("CARGO_PKG_VERSION").into(),
             resolution: cube.resolution(),
             axes: NODE_AXES.into(),
@@ -114,11 +125,16 @@ impl Header {
             format_version: u32,
         }
         let version: Version = serde_json::from_str(json).map_err(ReadCubeError::header)?;
-        if version.format_version != FORMAT_VERSION {
-            let found = version.format_version;
-            return Err(ReadCubeError::Version { found, expected: FORMAT_VERSION });
+        if !FORMAT_VERSIONS.contains(&version.format_version) {
+            let (found, newest) = (version.format_version, WITH_OBSERVER);
+            return Err(ReadCubeError::Version { found, newest });
         }
         serde_json::from_str(json).map_err(ReadCubeError::header)
+    }
+
+    /// Whether the file holds color-matching functions.
+    pub(crate) fn holds_observer(&self) -> bool {
+        self.format_version >= WITH_OBSERVER
     }
 }
 
@@ -136,9 +152,12 @@ impl ContractHeader {
         }
     }
 
-    pub(crate) fn to_contract(&self, illuminant: Vec<f64>) -> Result<Contract, ReadCubeError> {
-        let observer = Observer::cie_1931_2deg();
-        expect_field("observer", &self.observer, observer.name())?;
+    pub(crate) fn to_contract(
+        &self,
+        illuminant: Vec<f64>,
+        observer: Option<[Vec<f64>; 3]>,
+    ) -> Result<Contract, ReadCubeError> {
+        let observer = self.to_observer(observer)?;
         let grids = (grid_numbers(Grid::FIT), grid_numbers(Grid::FINE));
         if (self.fit_grid_nm, self.table_grid_nm) != grids {
             return Err(ReadCubeError::field("grids", format!("{:?}", self.fit_grid_nm), grids.0));
@@ -150,7 +169,26 @@ impl ContractHeader {
         let illuminant = Illuminant::from_spectrum(&self.illuminant, &power)
             .map_err(|e| ReadCubeError::field("illuminant", e, "a visible light"))?;
         let adaptation: Adaptation = parse_field("adaptation", &self.adaptation)?;
-        Ok(Contract { space, illuminant, observer, adaptation })
+        let contract = Contract { space, illuminant, observer, adaptation };
+        contract
+            .check()
+            .map_err(|e| ReadCubeError::field("contract", e, "a light that is seen"))?;
+        Ok(contract)
+    }
+
+    /// The observer of this name: built in, or with the file's color-matching functions.
+    fn to_observer(&self, matching: Option<[Vec<f64>; 3]>) -> Result<Observer, ReadCubeError> {
+        let Some([x, y, z]) = matching else {
+            let observer = Observer::cie_1931_2deg();
+            expect_field("observer", &self.observer, observer.name())?;
+            return Ok(observer);
+        };
+        let curve = |values| {
+            Spectrum::new(Grid::FINE, values)
+                .map_err(|e| ReadCubeError::field("observer", e, "finite samples"))
+        };
+        Observer::from_spectra(&self.observer, [curve(x)?, curve(y)?, curve(z)?])
+            .map_err(|e| ReadCubeError::field("observer", e, "color-matching functions"))
     }
 }
 

@@ -8,6 +8,7 @@
 //! - fluorescence: [`Model`], [`DyeSet`], [`DyeModel`], [`AnalyticModel`]
 //! - color: [`ModelOnGrid`], and [`ColorTable`] for whole images
 //! - cubes: [`Cube`], [`Interpolation`]; files are described in `docs/cube-format.md`
+//! - files that appear whole or not at all: [`Aside`], [`write_whole`]
 //! - sampling: [`Mixture::sample_incident`], [`Mixture::sample_outgoing`], [`Sample`]
 //! - inner loops: [`Cube::lookup_table`] gives a [`LookupTable`], whose [`Blend`] is a mixture in
 //!   single precision
@@ -32,6 +33,7 @@
 //!
 //! Out of scope: finding materials (crate `upglow-fit`), threads, printing.
 
+mod aside;
 mod batch;
 mod blend;
 mod blend_sampling;
@@ -55,14 +57,16 @@ mod model_on_grid;
 mod quantile_table;
 #[cfg(test)]
 mod random;
+mod rounding;
 mod sampling;
 mod sigmoid;
 
+pub use aside::{Aside, AsideError, write_whole};
 pub use batch::{ColorTable, LengthError};
 pub use blend::Blend;
 pub use coefficient_table::{CoefficientTable, CoefficientTableError, Integrator};
 pub use cube::{Cube, CubeError, FitRecord, LookupError, Node, NodeError};
-pub use cube_file::{ReadCubeError, WriteCubeError, write_whole};
+pub use cube_file::{ReadCubeError, WriteCubeError};
 pub use dye::{DyeSet, DyeSetError};
 pub use edge::Edge;
 pub use features::{FeatureError, Features};

@@ -3,6 +3,7 @@
 use crate::blend::{Bells, Blend, with_baseline};
 use crate::curve_table::CurveTable;
 use crate::material::Lobe;
+use crate::rounding::to_single;
 use crate::{Cube, Edge, LookupError, Mixing, Model};
 use fearless_simd::{Level, dispatch};
 
@@ -230,13 +231,6 @@ pub(crate) fn smaller_of(a: f32, b: f32) -> f32 {
 fn whole(position: f64) -> u32 {
     // By way of a signed number, which processors convert in one instruction.
     position as i32 as u32
-}
-
-/// The nearest number in single precision.
-#[expect(clippy::cast_possible_truncation, reason = "rounding is what it is for")]
-#[inline(always)]
-pub(crate) fn to_single(value: f64) -> f32 {
-    value as f32
 }
 
 #[cfg(test)]

@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 
 from . import _upglow
 from ._illuminant import Illuminant
+from ._observer import Observer
 
 
 class Contract:
-    """What must be agreed before RGB means a color. The observer is CIE 1931 2°.
+    """What must be agreed before RGB means a color.
 
     Parameters
     ----------
@@ -22,6 +23,11 @@ class Contract:
         ``xyz``, or eight numbers: CIE 1931 chromaticities x, y of red, green, blue and white.
     illuminant
         The light that materials are seen under: an `Illuminant`, or what one is made from.
+    observer
+        The eye that sees them: an `Observer`, or what one is made from. XYZ, whites and color
+        differences are this observer's. A space's primaries are standardized for CIE 1931 2° only,
+        and what another eye sees of them is not known: its numbers are kept as they are, and with
+        ``bradford`` RGB (1, 1, 1) is the perfect diffuser for every observer.
     adaptation
         ``bradford``: RGB (1, 1, 1) is the perfect diffuser under the light. ``none``: the space's
         own matrix; R = G = B is then not a flat spectrum unless the whites agree.
@@ -29,7 +35,7 @@ class Contract:
     Raises
     ------
     ValueError
-        If a name is unknown or the numbers make no space.
+        If a name is unknown, the numbers make no space, or the observer does not see the light.
 
     Examples
     --------
@@ -46,13 +52,15 @@ class Contract:
         *,
         space: str | Sequence[float] = "acescg",
         illuminant: Any = "D65",
+        observer: Any = "cie-1931-2deg",
         adaptation: str = "bradford",
     ) -> None:
         chosen: str | list[float] = space if isinstance(space, str) else [float(v) for v in space]
         if not isinstance(chosen, str) and len(chosen) != 8:
             raise ValueError(f"space has {len(chosen)} numbers, expected a name or eight numbers")
         light = Illuminant(illuminant)
-        self._native = _upglow.Contract(chosen, light._native, adaptation)
+        eye = Observer(observer)
+        self._native = _upglow.Contract(chosen, light._native, eye._native, adaptation)
 
     @classmethod
     def _of(cls, native: _upglow.Contract) -> Contract:
@@ -86,9 +94,9 @@ class Contract:
         return Illuminant(self._native.illuminant)
 
     @property
-    def observer(self) -> str:
-        """Name of the observer."""
-        return self._native.observer
+    def observer(self) -> Observer:
+        """The eye that sees materials."""
+        return Observer(self._native.observer)
 
     @property
     def adaptation(self) -> str:
@@ -113,5 +121,5 @@ class Contract:
     def __repr__(self) -> str:
         return (
             f"Contract(space={self.space!r}, illuminant={self.illuminant.name!r}, "
-            f"adaptation={self.adaptation!r})"
+            f"observer={self.observer.name!r}, adaptation={self.adaptation!r})"
         )

@@ -38,8 +38,13 @@ def grid(wavelengths_nm: ArrayLike) -> list[int]:
     return [int(nm[0]), int(nm[-1]), int(steps[0])]
 
 
-def samples(what: str, curve: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Wavelengths (nm) and values of a pair of arrays or of a ``colour.SpectralDistribution``."""
+def samples(
+    what: str, curve: Any, *, columns: int | None = None
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Wavelengths (nm) and values of a pair of arrays or of colour-science's distributions.
+
+    Values have shape (n,), or (n, columns).
+    """
     if hasattr(curve, "wavelengths") and hasattr(curve, "values"):
         curve = (curve.wavelengths, curve.values)
     try:
@@ -47,12 +52,14 @@ def samples(what: str, curve: Any) -> tuple[NDArray[np.float64], NDArray[np.floa
     except (TypeError, ValueError):
         raise TypeError(
             f"{what} is {type(curve).__name__}, expected a pair (wavelengths_nm, values) or a "
-            "colour.SpectralDistribution"
+            f"colour.{'Multi' if columns else ''}SpectralDistribution{'s' if columns else ''}"
         ) from None
     nm, value = (np.asarray(part, dtype=np.float64) for part in (wavelengths_nm, values))
-    if nm.ndim != 1 or value.shape != nm.shape:
+    per_wavelength = () if columns is None else (columns,)
+    if nm.ndim != 1 or value.shape != (*nm.shape, *per_wavelength):
+        expected = "both (n,)" if columns is None else f"(n,) and (n, {columns})"
         raise ValueError(
             f"{what}: wavelengths of shape {nm.shape} and values of shape {value.shape}, "
-            "expected both (n,)"
+            f"expected {expected}"
         )
     return nm, value

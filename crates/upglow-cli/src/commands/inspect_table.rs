@@ -48,6 +48,7 @@ pub(super) fn run(args: &InspectArgs, format: Format) -> Result<(), Failure> {
     if let Some(text) = &args.illuminant {
         contract.illuminant = plan::light("--illuminant", text)?;
     }
+    plan::check(&contract)?;
     let bytes = std::fs::read(&args.file).map_err(|error| {
         let found = io_message(&error);
         Failure::file(&args.file, format_args!("{found}, expected a table of coefficients"))

@@ -111,3 +111,12 @@ pub(crate) fn dye(peak_nm: u32) -> String {
         format!("{:.6},{:.6}", bell(peak_nm), bell(peak_nm + 30))
     })
 }
+
+/// A file of an observer: one bell each for long, middle and short wavelengths, 385 to 780 nm.
+pub(crate) fn eye() -> String {
+    let rows = (385..=780).step_by(5).map(|nm| {
+        let bell = |center: f64| (-(f64::from(nm) - center).powi(2) / 2500.0).exp();
+        format!("{nm},{:.6},{:.6},{:.6}\n", bell(600.0), bell(555.0), bell(450.0))
+    });
+    format!("wavelength_nm,x,y,z\n{}", rows.collect::<String>())
+}

@@ -1,0 +1,102 @@
+"""Observers."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _upglow
+from ._illuminant import is_path
+from ._wavelengths import samples
+
+
+class Observer:
+    """An eye: color-matching functions from 300 to 830 nm by 1 nm.
+
+    Parameters
+    ----------
+    source
+        A built-in name (``cie-1931-2deg``, any case), the path of a CSV file with the header
+        ``wavelength_nm,x,y,z``, a pair ``(wavelengths_nm, matching)`` of arrays of shapes (n,) and
+        (n, 3), or a ``colour.MultiSpectralDistributions`` of three, such as
+        ``colour.MSDS_CMFS["CIE 1964 10 Degree Standard Observer"]``. Samples cover at least 400 to
+        700 nm in steps of at most 5 nm, and are 0 or more; beyond them, and where they are
+        not-a-number at either end, the observer sees nothing. Below 360 nm samples must be 0.
+    name
+        The name that files state; by default that of the source.
+
+    Raises
+    ------
+    ValueError
+        If the name is unknown or the samples are no observer.
+    OSError
+        If the file cannot be read.
+
+    Examples
+    --------
+    >>> import upglow
+    >>> upglow.Observer("cie-1931-2deg").matching.shape
+    (531, 3)
+    """
+
+    __slots__ = ("_native",)
+
+    def __init__(self, source: Any, *, name: str | None = None) -> None:
+        self._native = _native(source, name)
+
+    @staticmethod
+    def names() -> list[str]:
+        """The names of the built-in observers."""
+        return _upglow.Observer.names()
+
+    @property
+    def name(self) -> str:
+        """The name that files state."""
+        return self._native.name
+
+    @property
+    def matching(self) -> NDArray[np.float64]:
+        """x, y and z at each wavelength of ``upglow.FINE_NM``; shape (531, 3)."""
+        return self._native.matching
+
+    def __repr__(self) -> str:
+        return f"Observer({self.name!r})"
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Observer) and self._key() == other._key()
+
+    def __hash__(self) -> int:
+        return hash(self._key())
+
+    def _key(self) -> tuple[str, bytes]:
+        return self.name, self.matching.tobytes()
+
+
+def _native(source: Any, name: str | None) -> _upglow.Observer:
+    if isinstance(source, _upglow.Observer):
+        return source
+    if isinstance(source, Observer):
+        return source._native
+    if isinstance(source, (str, os.PathLike)):
+        return _from_word(os.fspath(source), name)
+    nm, matching = samples("observer", source, columns=3)
+    label = name or str(getattr(source, "name", "custom"))
+    return _upglow.Observer.from_samples(label, nm.tolist(), np.ascontiguousarray(matching))
+
+
+def _from_word(word: str, name: str | None) -> _upglow.Observer:
+    path = Path(word)
+    try:
+        return _upglow.Observer.named(word)
+    except ValueError:
+        if not is_path(path):
+            raise
+    text = path.read_text(encoding="utf-8")
+    try:
+        return _upglow.Observer.from_csv(name or path.stem, text)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
