@@ -7,6 +7,7 @@ use crate::build::Tally;
 use crate::job::Job;
 use crate::parabola::sigmoid_of;
 use crate::problem::{PassiveProblem, Shape};
+use crate::rounding::to_single;
 use crate::solver::{Jacobian, Residuals, solve};
 use crate::summary::Spread;
 use crate::verify::random_rgb;
@@ -55,8 +56,8 @@ pub fn round_trip(
 ) -> Spread {
     let colorimetry = contract.on(Grid::FIT);
     let miss = |point: usize| {
-        let rgb = LinearRgb(random_rgb(seed, point).0.map(|v| f64::from(single(v))));
-        let found = table.sigmoid(rgb.0.map(single));
+        let rgb = LinearRgb(random_rgb(seed, point).0.map(|v| f64::from(to_single(v))));
+        let found = table.sigmoid(rgb.0.map(to_single));
         let shown = colorimetry.grid().wavelengths_nm().map(|nm| found.at(nm));
         let shown = colorimetry.xyz_from_reflectance(shown);
         Metric::De2000.distance(&colorimetry, colorimetry.xyz_from_rgb(rgb), shown)
@@ -94,7 +95,7 @@ impl Column<'_> {
             found[level] = self.from(level, found[level - 1]);
         }
         let numbers = found.iter().enumerate().map(|(level, near)| self.stored(level, *near));
-        numbers.map(|s| [s.c0, s.c1, s.c2].map(single)).collect()
+        numbers.map(|s| [s.c0, s.c1, s.c2].map(to_single)).collect()
     }
 
     /// Coefficients of 1, t, t² that the general search finds.
@@ -173,12 +174,6 @@ impl Residuals<3, 3> for LitProblem<'_> {
     fn bounds(&self) -> [[f64; 2]; 3] {
         self.passive.bounds()
     }
-}
-
-/// The nearest number in single precision.
-#[expect(clippy::cast_possible_truncation, reason = "rounding is what it is for")]
-fn single(value: f64) -> f32 {
-    value as f32
 }
 
 #[cfg(test)]

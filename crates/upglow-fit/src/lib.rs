@@ -33,6 +33,7 @@ mod parabola;
 mod polish;
 mod problem;
 mod progress;
+mod rounding;
 mod search;
 mod seed;
 mod solver;

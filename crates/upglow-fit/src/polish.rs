@@ -96,9 +96,8 @@ impl<'c> Polisher<'c> {
             _ => Vec::new(),
         };
         let diffuser = model.colorimetry().white().0;
-        let xyz = |rgb| model.colorimetry().xyz_from_rgb(LinearRgb(rgb)).0;
-        let white = xyz([1.0; 3]);
-        let xyz_from_rgb = Matrix3::from_columns(Matrix3::IDENTITY.0.map(xyz));
+        let xyz_from_rgb = model.colorimetry().xyz_from_rgb_matrix();
+        let white = xyz_from_rgb * [1.0; 3];
         let by_white = diffuser.map(|v| 1.0 / v);
         let grays_are_flat = (0..3).all(|k| (white[k] - diffuser[k]).abs() < FLAT);
         let sums = Sums::new(model);

@@ -9,6 +9,7 @@ use upglow_color::{Goal, Lab, Xyz, ciede2000, ciede2000_residuals, lab_from_xyz}
 use crate::Fit;
 use crate::parabola::MIDDLE_NM;
 use crate::problem::Shape;
+use crate::rounding::to_single;
 use crate::sums::{Lanes, Sums};
 
 /// One material to start from.
@@ -340,10 +341,4 @@ fn bell_variants(
         }
     }
     (variants, lanes)
-}
-
-/// The nearest number in single precision.
-#[expect(clippy::cast_possible_truncation, reason = "rounding is what it is for")]
-fn to_single(value: f64) -> f32 {
-    value as f32
 }

@@ -11,7 +11,7 @@ use std::path::Path;
 
 use rayon::prelude::*;
 use upglow::{Cube, LookupError, Model};
-use upglow_color::{Grid, Illuminant};
+use upglow_color::{Grid, Illuminant, LinearRgb};
 use upglow_fit::{FitOptionsError, Progress, StandingTable, Watch};
 
 use self::compact::CompactMaker;
@@ -161,6 +161,8 @@ pub struct Baker<'c> {
     cube: &'c Cube,
     options: BakeOptions,
     maker: Box<dyn Maker + 'c>,
+    /// Names, in the order in which planes are filled; alpha comes after.
+    channels: Vec<String>,
 }
 
 /// Memory for the channels of a band, bytes: wide pictures of many channels are cut into fewer
@@ -189,7 +191,8 @@ impl<'c> Baker<'c> {
             }
             (Form::Radiance { light }, _) => Box::new(RadianceMaker::new(cube, light)),
         };
-        Ok(Self { cube, options, maker })
+        let channels = maker.channels();
+        Ok(Self { cube, options, maker, channels })
     }
 
     /// Bakes the picture at `input` into a file at `output`, on all threads of the current rayon
@@ -202,9 +205,7 @@ impl<'c> Baker<'c> {
     ///
     /// [`BakeError`]; `output` is then as it was.
     pub fn bake(&self, input: &Path, output: &Path, watch: &dyn Watch) -> Result<Baked, BakeError> {
-        let contract = self.cube.contract();
-        let mut picture = LinearPicture::open(input, &self.options.assumed)?;
-        let conversion = picture.conversion_to(contract);
+        let mut picture = self.open(input)?;
         let size = picture.picture().size();
         let mending = self.mending(input, watch)?;
         let mut writer = ExrWriter::create(output, self.description(picture.picture()))?;
@@ -213,10 +214,7 @@ impl<'c> Baker<'c> {
             if watch.stopped() {
                 return Err(BakeError::Stopped);
             }
-            if let Some(conversion) = conversion {
-                conversion.apply(&mut band.rgb);
-            }
-            baked.repaired += mending.mend(&mut band)?;
+            baked.repaired += mending.mend(&mut band, self.cube)?;
             let planes = self.planes(&band);
             baked.channels = planes.len();
             writer.write_band(&planes.iter().map(Vec::as_slice).collect::<Vec<_>>())?;
@@ -227,20 +225,23 @@ impl<'c> Baker<'c> {
         Ok(baked)
     }
 
+    /// A picture whose rows come in the cube's RGB space.
+    fn open(&self, input: &Path) -> Result<LinearPicture, LinearPictureError> {
+        let mut picture = LinearPicture::open(input, &self.options.assumed)?;
+        picture.convert_to(self.cube.contract());
+        Ok(picture)
+    }
+
     /// What is done with texels outside the cube; one way must read the whole picture first.
     fn mending(&self, input: &Path, watch: &dyn Watch) -> Result<Mending, BakeError> {
         let Some(repair) = self.options.repair else { return Ok(Mending::Refuse) };
         let mut greatest = 0.0_f32;
         if repair.reads_all_first() {
-            let mut picture = LinearPicture::open(input, &self.options.assumed)?;
-            let conversion = picture.conversion_to(self.cube.contract());
+            let mut picture = self.open(input)?;
             let [_, total] = picture.picture().size();
-            while let Some(mut band) = picture.read_band(BAND_ROWS)? {
+            while let Some(band) = picture.read_band(BAND_ROWS)? {
                 if watch.stopped() {
                     return Err(BakeError::Stopped);
-                }
-                if let Some(conversion) = conversion {
-                    conversion.apply(&mut band.rgb);
                 }
                 greatest = greatest.max(greatest_value(&band.rgb));
                 let done = band.first_row + band.rows();
@@ -253,7 +254,7 @@ impl<'c> Baker<'c> {
 
     /// The channels of a band, alpha last.
     fn planes(&self, band: &Band) -> Vec<Vec<f32>> {
-        let count = self.maker.channels().len();
+        let count = self.channels.len();
         let rows: Vec<Vec<f32>> = band
             .rgb
             .par_chunks(band.width)
@@ -283,7 +284,7 @@ impl<'c> Baker<'c> {
 
     fn description(&self, picture: &Picture) -> ExrDescription {
         let alpha = picture.has_alpha().then(|| "A".to_owned());
-        let channels = self.maker.channels().into_iter().chain(alpha);
+        let channels = self.channels.iter().cloned().chain(alpha);
         let mut description = ExrDescription::new(picture.size(), channels);
         description.sample = self.maker.sample(self.options.sample);
         description.compression = self.maker.compression();
@@ -293,7 +294,7 @@ impl<'c> Baker<'c> {
     }
 
     fn band_rows(&self, width: usize) -> usize {
-        let row_bytes = size_of::<f32>() * width * self.maker.channels().len();
+        let row_bytes = size_of::<f32>() * width * self.channels.len();
         (BAND_BYTES / row_bytes.max(1)).clamp(1, BAND_ROWS)
     }
 }
@@ -306,9 +307,9 @@ enum Mending {
 
 impl Mending {
     /// Leaves only colors of the cube; how many texels it changed.
-    fn mend(&self, band: &mut Band) -> Result<u64, BakeError> {
+    fn mend(&self, band: &mut Band, cube: &Cube) -> Result<u64, BakeError> {
         match self {
-            Self::Refuse => refuse_outside(band).map(|()| 0),
+            Self::Refuse => refuse_outside(band, cube).map(|()| 0),
             Self::Repair { repair, greatest, table } => {
                 Ok(repair.of(*greatest, table).repair(&mut band.rgb).changed)
             }
@@ -316,14 +317,12 @@ impl Mending {
     }
 }
 
-fn refuse_outside(band: &Band) -> Result<(), BakeError> {
-    let is_outside = |rgb: &[f32; 3]| !rgb.iter().all(|v| (0.0..=1.0).contains(v));
-    let Some(first) = band.rgb.par_iter().position_first(is_outside) else { return Ok(()) };
-    let others = band.rgb[first + 1..].par_iter().filter(|rgb| is_outside(rgb)).count();
-    let named = ["red", "green", "blue"].into_iter().zip(band.rgb[first]);
-    let (channel, value) =
-        named.into_iter().find(|(_, v)| !(0.0..=1.0).contains(v)).expect("the texel is outside");
-    let source = LookupError::Outside { channel, value: value.into() };
+fn refuse_outside(band: &Band, cube: &Cube) -> Result<(), BakeError> {
+    let refusal = |rgb: &[f32; 3]| cube.corners(LinearRgb(rgb.map(f64::from))).err();
+    let numbered = band.rgb.par_iter().enumerate();
+    let first = numbered.find_map_first(|(i, rgb)| Some((i, refusal(rgb)?)));
+    let Some((first, source)) = first else { return Ok(()) };
+    let others = band.rgb[first + 1..].par_iter().filter_map(refusal).count();
     let (x, y) = (first % band.width, band.first_row + first / band.width);
     Err(BakeError::Texel { x, y, source, others })
 }

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use crate::Encoding;
+use crate::rounding::to_single;
 
 /// Some whole rows of a picture.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,16 +35,10 @@ impl Band {
         }
         self.rgb.par_chunks_mut(DECODED_TOGETHER).for_each(|pixels| {
             for v in pixels.as_flattened_mut() {
-                *v = single(encoding.to_linear(f64::from(*v)));
+                *v = to_single(encoding.to_linear(f64::from(*v)));
             }
         });
     }
-}
-
-/// Rounds to what a picture stores.
-#[expect(clippy::cast_possible_truncation, reason = "pictures hold single precision")]
-pub(crate) fn single(value: f64) -> f32 {
-    value as f32
 }
 
 #[cfg(test)]

@@ -28,7 +28,7 @@ pub(crate) fn space_of_singles(found: [[f32; 2]; 4]) -> Option<RgbSpace> {
 /// The eight numbers of a space as an OpenEXR attribute states them.
 pub fn chromaticities(space: &RgbSpace) -> crate::Attribute {
     let [red, green, blue] = space.primaries();
-    let singles = [red, green, blue, space.white()].map(|c| c.map(crate::band::single));
+    let singles = [red, green, blue, space.white()].map(|c| c.map(crate::rounding::to_single));
     crate::Attribute::Chromaticities(singles)
 }
 

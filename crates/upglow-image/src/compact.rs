@@ -6,7 +6,7 @@ use upglow::{Accounting, DyeModel, Fluorescence, Mixing, Mixture};
 use upglow_color::Grid;
 
 use crate::attribute_spectrum::{parse_spectrum, print_spectrum};
-use crate::band::single;
+use crate::rounding::to_single;
 use crate::{Attribute, Attributes, SpectralChannel};
 
 /// What the maps beside the reflectances hold.
@@ -290,10 +290,10 @@ impl CompactLayout {
             CompactForm::PerDye => self.dye_maps(mixture)?,
             CompactForm::PerLobe => self.lobe_maps(mixture)?,
         };
-        let maps: Vec<f32> = maps.into_iter().map(single).collect();
+        let maps: Vec<f32> = maps.into_iter().map(to_single).collect();
         let mut texel: Vec<f32> = Vec::with_capacity(self.wavelengths_nm.len() + maps.len());
         for (i, &nm) in self.wavelengths_nm.iter().enumerate() {
-            texel.push(single(mixture.reflectance(nm) + self.moved(&maps, i, i)));
+            texel.push(to_single(mixture.reflectance(nm) + self.moved(&maps, i, i)));
         }
         texel.extend(maps);
         Ok(texel)
@@ -312,7 +312,8 @@ impl CompactLayout {
         }
         let (reflectances, maps) = texel.split_at(bands);
         let row = |i: usize| {
-            let share = |o| if i == o { reflectances[i] } else { single(self.moved(maps, i, o)) };
+            let share =
+                |o| if i == o { reflectances[i] } else { to_single(self.moved(maps, i, o)) };
             (0..bands).map(share).collect()
         };
         let shares = (0..bands).map(row).collect();
@@ -586,9 +587,9 @@ mod tests {
             let Sigmoid { c0, c1, c2 } = reflectance;
             let _ = (c0, c1);
             Node {
-                reflectance: [500.0, single(c2), 0.0],
+                reflectance: [500.0, to_single(c2), 0.0],
                 dye: first.try_into().unwrap(),
-                fluorescence: [single(weight), single(concentration), 0.0],
+                fluorescence: [to_single(weight), to_single(concentration), 0.0],
                 de2000: 0.0,
             }
         };

@@ -1,6 +1,6 @@
 //! Pictures to try the program with, by formula: no free picture has colors this wide.
 
-use crate::band::single;
+use crate::rounding::to_single;
 
 /// A picture in linear ACEScg, each channel 0..=1.
 #[derive(Clone, Copy, Debug)]
@@ -41,7 +41,7 @@ impl ExamplePicture {
     pub fn texel(&self, [x, y]: [usize; 2]) -> [f32; 3] {
         let place =
             [(x as f64 + 0.5) / self.size[0] as f64, (y as f64 + 0.5) / self.size[1] as f64];
-        (self.color)(place).map(single)
+        (self.color)(place).map(to_single)
     }
 
     /// All texels of a row.

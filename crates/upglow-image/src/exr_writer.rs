@@ -5,8 +5,8 @@ use std::path::Path;
 
 use half::f16;
 use rayon::prelude::*;
+use upglow::{Aside, AsideError};
 
-use crate::aside::Aside;
 use crate::exr_attribute::Attributes;
 use crate::exr_header::{Channel, MAX_SIDE, Packing, Sample, Window, is_name, is_reserved, print};
 
@@ -68,7 +68,10 @@ impl ExrDescription {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum WriteExrError {
-    /// The file cannot be made or filled.
+    /// The file cannot be started.
+    #[error(transparent)]
+    Create(#[from] AsideError),
+    /// The file cannot be filled or named.
     #[error("{0}")]
     Io(#[from] io::Error),
     /// The picture is empty or too large.

@@ -32,7 +32,6 @@
 //!
 //! Out of scope: finding materials, colors under a light, and any other format.
 
-mod aside;
 mod attribute_spectrum;
 mod bake;
 mod band;
@@ -53,6 +52,7 @@ mod lint_pixels;
 mod material_picture;
 mod picture;
 mod repair;
+mod rounding;
 mod spectral_layout;
 mod spectral_picture;
 
@@ -74,7 +74,7 @@ pub use exr_error::ExrError;
 pub use exr_header::{Channel, Sample, Window};
 pub use exr_reader::ExrReader;
 pub use exr_writer::{Compression, ExrDescription, ExrWriter, WriteExrError};
-pub use linear_picture::{Assumed, Conversion, LinearPicture, LinearPictureError};
+pub use linear_picture::{Assumed, LinearPicture, LinearPictureError};
 pub use lint::{Depth, Finding, Lint, Rule, Severity, lint};
 pub use material_picture::{MaterialPicture, MaterialPictureError};
 pub use picture::{Alpha, Picture, PictureError};

@@ -5,7 +5,7 @@ use std::path::Path;
 use rayon::prelude::*;
 use upglow_color::{Contract, Grid, Matrix3, RgbSpace};
 
-use crate::band::single;
+use crate::rounding::to_single;
 use crate::{Alpha, Band, Encoding, Picture, PictureError};
 
 /// What is taken for granted of files that do not say it themselves.
@@ -40,6 +40,8 @@ pub struct LinearPicture {
     picture: Picture,
     space: RgbSpace,
     encoding: Encoding,
+    /// From its own RGB space to that which was asked for, where they differ.
+    conversion: Option<Matrix3>,
 }
 
 /// Two ways around the same matrices differ by this much in single precision; what is nearer to 0
@@ -60,6 +62,7 @@ impl LinearPicture {
             picture,
             space: space.ok_or(LinearPictureError::Space)?,
             encoding: encoding.ok_or(LinearPictureError::Encoding)?,
+            conversion: None,
         })
     }
 
@@ -68,7 +71,7 @@ impl LinearPicture {
         &self.picture
     }
 
-    /// Its RGB space, by itself or as assumed.
+    /// The RGB space that it is stored in, by itself or as assumed.
     pub fn space(&self) -> &RgbSpace {
         &self.space
     }
@@ -78,8 +81,18 @@ impl LinearPicture {
         self.encoding
     }
 
+    /// Has the rows that follow converted to the RGB space of a contract, under the contract's
+    /// light and adaptation. What rounding alone moves beyond 0 or 1 returns there.
+    pub fn convert_to(&mut self, contract: &Contract) {
+        self.conversion = (self.space != contract.space).then(|| {
+            let from = Contract { space: self.space.clone(), ..contract.clone() }.on(Grid::FIT);
+            contract.on(Grid::FIT).rgb_from_xyz_matrix() * from.xyz_from_rgb_matrix()
+        });
+    }
+
     /// The next rows, at least `rows` of them or what is left, as linear light in the space of the
-    /// picture itself; colors are those of the opaque picture, whatever its alpha.
+    /// picture itself or of [`LinearPicture::convert_to`]; colors are those of the opaque picture,
+    /// whatever its alpha.
     ///
     /// # Errors
     ///
@@ -92,39 +105,15 @@ impl LinearPicture {
                 *rgb = if *a == 0.0 { [0.0; 3] } else { rgb.map(|v| v / a) };
             });
         }
+        if let Some(conversion) = self.conversion {
+            band.rgb.par_iter_mut().for_each(|rgb| *rgb = converted(*rgb, conversion));
+        }
         Ok(Some(band))
     }
-
-    /// What takes its colors to the RGB space of a contract, under the contract's light and
-    /// adaptation; `None` where that is its own.
-    pub fn conversion_to(&self, contract: &Contract) -> Option<Conversion> {
-        if self.space == contract.space {
-            return None;
-        }
-        let from = Contract { space: self.space.clone(), ..contract.clone() }.on(Grid::FIT);
-        let primary = |k: usize| {
-            let mut rgb = [0.0; 3];
-            rgb[k] = 1.0;
-            from.xyz_from_rgb(upglow_color::LinearRgb(rgb)).0
-        };
-        let xyz_from_rgb = Matrix3::from_columns([0, 1, 2].map(primary));
-        Some(Conversion { matrix: contract.on(Grid::FIT).rgb_from_xyz_matrix() * xyz_from_rgb })
-    }
 }
 
-/// A linear map between two RGB spaces.
-#[derive(Clone, Copy, Debug)]
-pub struct Conversion {
-    matrix: Matrix3,
-}
-
-impl Conversion {
-    /// Converts each color in place; what rounding alone has moved beyond 0 or 1 returns there.
-    pub fn apply(&self, rgb: &mut [[f32; 3]]) {
-        rgb.par_iter_mut().for_each(|rgb| {
-            *rgb = (self.matrix * rgb.map(f64::from)).map(|v| snapped(single(v)));
-        });
-    }
+fn converted(rgb: [f32; 3], conversion: Matrix3) -> [f32; 3] {
+    (conversion * rgb.map(f64::from)).map(|v| snapped(to_single(v)))
 }
 
 fn snapped(v: f32) -> f32 {

@@ -7,6 +7,8 @@ use rayon::prelude::*;
 use upglow_color::LinearRgb;
 use upglow_fit::{StandingKind, StandingTable};
 
+use crate::rounding::to_single;
+
 /// What to do with texels that cannot be baked as they are.
 ///
 /// With each, a texel with a value that is no number or infinite becomes black, and is counted.
@@ -141,7 +143,7 @@ fn nearest(rgb: [f32; 3], table: &StandingTable) -> [f32; 3] {
     let found = table.gaps(LinearRgb(rgb.map(f64::from))).fluorescence.nearest;
     let found = table.colorimetry().rgb_from_xyz(found).0.map(|v| v.clamp(0.0, 1.0));
     let gray = found.iter().sum::<f64>() / 3.0;
-    let towards_gray = |share: f64| found.map(|v| single(v + share * (gray - v)));
+    let towards_gray = |share: f64| found.map(|v| to_single(v + share * (gray - v)));
     let shown = |share: f64| is_shown(towards_gray(share), table);
     towards_gray(if shown(OFF_THE_BORDER) { OFF_THE_BORDER } else { least_share(shown) })
 }
@@ -158,11 +160,6 @@ fn least_share(shown: impl Fn(f64) -> bool) -> f64 {
 
 fn is_shown(rgb: [f32; 3], table: &StandingTable) -> bool {
     table.kind(LinearRgb(rgb.map(f64::from))) != StandingKind::Unreachable
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "pictures hold single precision")]
-fn single(value: f64) -> f32 {
-    value as f32
 }
 
 impl fmt::Display for Repair {

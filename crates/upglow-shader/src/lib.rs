@@ -24,6 +24,7 @@
 
 mod language;
 mod payload;
+mod rounding;
 mod shader;
 mod template;
 mod textures;

@@ -7,6 +7,7 @@ use upglow_color::Grid;
 
 use crate::Language;
 use crate::payload::{checksum, payload};
+use crate::rounding::to_single;
 use crate::template::functions;
 use crate::textures::{BINS, Texture, curves, nodes};
 use crate::tiff::tiff;
@@ -188,7 +189,7 @@ fn constants(cube: &Cube) -> String {
             let [absorption, emission] = steps_nm(bells).map(float);
             number("ABSORPTION_STEP_NM", "f32", &absorption);
             number("EMISSION_STEP_NM", "f32", &emission);
-            number("QUANTUM_YIELD", "f32", &float(single(bells.quantum_yield())));
+            number("QUANTUM_YIELD", "f32", &float(to_single(bells.quantum_yield())));
             number("NEWTON_STEPS", "i32", &NEWTON_STEPS.to_string());
             if bells.accounting() == Accounting::Photon {
                 number("BRACKETED_STEPS", "i32", &BRACKETED_STEPS.to_string());
@@ -205,17 +206,12 @@ fn constants(cube: &Cube) -> String {
 fn steps_nm(bells: &AnalyticModel) -> [f32; 2] {
     let emission = 2.0 / 3.0 / bells.emission(0.0, 0.0).0;
     let widths = bells.absorption_fwhm_nm() / bells.emission_fwhm_nm();
-    [single(emission * widths), single(emission)]
+    [to_single(emission * widths), to_single(emission)]
 }
 
 /// The number with as many digits as lead back to it, and never without a point.
 fn float(value: f32) -> String {
     format!("{value:?}")
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "rounding is what it is for")]
-fn single(value: f64) -> f32 {
-    value as f32
 }
 
 /// The textures and the functions that read a texel of them.

@@ -4,6 +4,7 @@ use upglow::{Cube, DyeModel, Fluorescence, Material, Mixture, Model, Node, Sigmo
 use upglow_color::{Grid, Spectrum};
 
 use crate::ShaderError;
+use crate::rounding::to_single;
 
 /// Most texels along an axis that every driver takes: `WebGPU`'s own limit, and above what OpenGL ES
 /// and Direct3D 10 ask for.
@@ -123,9 +124,8 @@ fn running_sum(terms: impl Iterator<Item = f64>) -> Vec<f64> {
 }
 
 /// The nearest numbers in single precision; 0 for what has none.
-#[expect(clippy::cast_possible_truncation, reason = "rounding is what it is for")]
 fn single(texel: [f64; 4]) -> [f32; 4] {
-    texel.map(|value| value as f32).map(|value| if value.is_finite() { value } else { 0.0 })
+    texel.map(to_single).map(|value| if value.is_finite() { value } else { 0.0 })
 }
 
 #[cfg(test)]

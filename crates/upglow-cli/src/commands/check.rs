@@ -154,6 +154,7 @@ fn contract(args: &CheckArgs, cube: Option<&Cube>) -> Result<Contract, Failure> 
     if let Some(adaptation) = args.adapt {
         contract.adaptation = adaptation;
     }
+    plan::check(&contract)?;
     Ok(contract)
 }
 
@@ -198,16 +199,13 @@ fn check(
     let open = LinearPicture::open(input, assumed);
     let mut picture = open.map_err(|error| picture_failure(&error, input))?;
     let (contract, judge) = judges.of(&picture)?;
-    let conversion = picture.conversion_to(contract);
+    picture.convert_to(contract);
     let [width, height] = picture.picture().size();
     let faulty = |error: &dyn std::fmt::Display| Failure::file(input, error);
     let mut checker = judge.checker(width, height).map_err(|error| faulty(&error))?;
-    while let Some(mut band) = picture.read_band(BAND_ROWS).map_err(|error| faulty(&error))? {
+    while let Some(band) = picture.read_band(BAND_ROWS).map_err(|error| faulty(&error))? {
         if bar.stopped() {
             return Err(Failure::Stopped);
-        }
-        if let Some(conversion) = conversion {
-            conversion.apply(&mut band.rgb);
         }
         checker.add(band.first_row, &band.rgb).map_err(|error| faulty(&error))?;
         let done = band.first_row + band.rows();

@@ -4,7 +4,7 @@ pub(crate) mod svg;
 pub(crate) mod terminal;
 
 use upglow::{Material, Mixture, Model, Sigmoid};
-use upglow_color::{Colorimetry, Grid, LinearRgb};
+use upglow_color::{Colorimetry, Grid, LinearRgb, srgb_encoded};
 
 /// First wavelength of every picture, nm.
 const FIRST_NM: f64 = 300.0;
@@ -111,15 +111,10 @@ const OUTSIDE: f64 = 1e-3;
 impl Swatch {
     /// The nearest color that sRGB holds, component by component, from linear sRGB.
     pub(crate) fn from_linear(rgb: LinearRgb) -> Self {
-        let level = |v: f64| format!("{:02x}", eight_bits(encoded(v.clamp(0.0, 1.0))));
+        let level = |v: f64| format!("{:02x}", eight_bits(srgb_encoded(v.clamp(0.0, 1.0))));
         let inside = |v: &f64| (-OUTSIDE..=1.0 + OUTSIDE).contains(v);
         Self { hex: format!("#{}", rgb.0.map(level).concat()), clipped: !rgb.0.iter().all(inside) }
     }
-}
-
-/// The transfer curve of IEC 61966-2-1.
-fn encoded(linear: f64) -> f64 {
-    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
 #[expect(

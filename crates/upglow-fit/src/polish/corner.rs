@@ -4,7 +4,8 @@ use upglow::{Cube, Edge, Fluorescence, ModelOnGrid};
 
 use crate::parabola::{edge_of, scaled};
 use crate::polish::in_units;
-use crate::polish::shine::{CHART_NM, to_single};
+use crate::polish::shine::CHART_NM;
+use crate::rounding::to_single;
 
 /// What polishing needs of a node, one cache line.
 #[derive(Clone, Copy, Debug)]

@@ -5,6 +5,7 @@ use fearless_simd::{Level, dispatch, f32x8};
 use upglow::{AnalyticModel, Model, ModelOnGrid};
 
 use crate::parabola::{Parabola, scaled};
+use crate::rounding::to_single;
 
 /// Samples of one curve at the wavelengths that the observer sees, padded to whole vectors.
 #[derive(Clone, Copy, Debug)]
@@ -367,13 +368,6 @@ fn by_totals<S: Simd>([a, b, c]: [[f32x8<S>; 3]; 3]) -> [[f32; 3]; 3] {
 #[inline(always)]
 fn single_parabola([q0, q1, q2]: &Parabola) -> [f32; 3] {
     [to_single(*q0), to_single(*q1), to_single(*q2)]
-}
-
-/// The nearest number in single precision.
-#[expect(clippy::cast_possible_truncation, reason = "rounding is what it is for")]
-#[inline(always)]
-pub(super) fn to_single(value: f64) -> f32 {
-    value as f32
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ use upglow_color::{ColorSolid, LinearRgb, Metric, Xyz};
 
 use super::StandingKind;
 use super::solids::{Side, Solids, parted};
+use crate::rounding::to_single;
 
 #[derive(Debug)]
 pub(super) struct Lattice {
@@ -246,8 +247,7 @@ fn whole(position: f64) -> usize {
 }
 
 /// Single precision, not below the value.
-#[expect(clippy::cast_possible_truncation, reason = "stored distances need no more digits")]
 fn rounded_up(value: f64) -> f32 {
-    let single = value as f32;
+    let single = to_single(value);
     if f64::from(single) < value { single.next_up() } else { single }
 }

@@ -4,7 +4,7 @@ use upglow::{ColorTable, Cube};
 use upglow_color::{Grid, Illuminant, Matrix3};
 
 use super::{Maker, attributes};
-use crate::band::single;
+use crate::rounding::to_single;
 use crate::{Attribute, Attributes, Compression};
 
 /// Linear RGB, in the cube's space, of the blend of each texel under a light.
@@ -36,7 +36,7 @@ impl<'c> RadianceMaker<'c> {
         self.table.xyz(rgb, &mut colors).expect("as many colors as texels");
         for (i, xyz) in colors.into_iter().enumerate() {
             let color = self.rgb_from_xyz * xyz.map(f64::from);
-            (0..3).for_each(|k| planes[k][i] = single(color[k]));
+            (0..3).for_each(|k| planes[k][i] = to_single(color[k]));
         }
     }
 }
@@ -54,7 +54,7 @@ impl Maker for RadianceMaker<'_> {
     fn attributes(&self) -> Attributes {
         let mut attributes = attributes::common(self.cube, "radiance", CHANNELS);
         attributes.insert("upglow.light".into(), Attribute::Text(self.light.name().into()));
-        attributes.insert("upglow.white".into(), Attribute::Float3(self.white.map(single)));
+        attributes.insert("upglow.white".into(), Attribute::Float3(self.white.map(to_single)));
         attributes
     }
 

@@ -5,7 +5,7 @@ use upglow_color::{Grid, LinearRgb};
 
 use super::radiance::RadianceMaker;
 use super::{Maker, attributes};
-use crate::band::single;
+use crate::rounding::to_single;
 use crate::{
     Attribute, Attributes, BISPECTRAL_UNIT, BispectralUnit, Compression, LAYOUT_VERSION,
     LAYOUT_VERSION_VALUE, SpectralChannel,
@@ -82,14 +82,14 @@ impl Maker for SpectralMaker<'_> {
             if mixture.is_fluorescent() {
                 let matrix = mixture.reradiation_matrix(self.grid);
                 for (i, band) in bands.iter_mut().enumerate() {
-                    band[texel] = single(matrix[i][i]);
+                    band[texel] = to_single(matrix[i][i]);
                 }
                 for (plane, [i, o]) in moved.iter_mut().zip(&pairs) {
-                    plane[texel] = single(matrix[*o][*i]);
+                    plane[texel] = to_single(matrix[*o][*i]);
                 }
             } else {
                 for (band, nm) in bands.iter_mut().zip(self.grid.wavelengths_nm()) {
-                    band[texel] = single(mixture.reflectance(nm));
+                    band[texel] = to_single(mixture.reflectance(nm));
                 }
             }
         }

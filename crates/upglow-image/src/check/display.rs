@@ -1,6 +1,6 @@
 //! Colors of the contract on a screen.
 
-use upglow_color::{Contract, Grid, Matrix3, RgbSpace, Xyz};
+use upglow_color::{Contract, Grid, Matrix3, RgbSpace, Xyz, srgb_encoded};
 
 use super::Judge;
 
@@ -21,20 +21,15 @@ impl Display {
         let srgb = srgb.on(Grid::FIT);
         let [from, to] = [colorimetry.white(), srgb.white()];
         let adapted = upglow_color::Adaptation::default().target_from_source(from, to);
-        let columns = [0, 1, 2].map(|k| {
-            let mut unit = [0.0; 3];
-            unit[k] = 1.0;
-            colorimetry.xyz_from_rgb(upglow_color::LinearRgb(unit)).0
-        });
         Self {
             srgb_from_xyz: srgb.rgb_from_xyz_matrix() * adapted,
-            xyz_from_rgb: Matrix3::from_columns(columns),
+            xyz_from_rgb: colorimetry.xyz_from_rgb_matrix(),
         }
     }
 
     /// The color in 8 bits; what sRGB cannot hold is cut off by channel.
     pub(super) fn srgb(&self, xyz: Xyz) -> [u8; 3] {
-        (self.srgb_from_xyz * xyz.0).map(|v| byte(encoded(v.clamp(0.0, 1.0))))
+        (self.srgb_from_xyz * xyz.0).map(|v| byte(srgb_encoded(v.clamp(0.0, 1.0))))
     }
 
     /// A color of the contract's RGB in 8 bits.
@@ -44,17 +39,8 @@ impl Display {
 
     /// How bright a color of the contract's RGB looks: 0..=1, sRGB-encoded luminance.
     pub(super) fn brightness(&self, rgb: [f64; 3]) -> f64 {
-        encoded((self.xyz_from_rgb * rgb)[1].clamp(0.0, 1.0))
+        srgb_encoded((self.xyz_from_rgb * rgb)[1].clamp(0.0, 1.0))
     }
-}
-
-/// The encoding of sRGB.
-///
-/// # Source
-///
-/// IEC 61966-2-1.
-fn encoded(linear: f64) -> f64 {
-    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
 /// 0..=1 in 8 bits.

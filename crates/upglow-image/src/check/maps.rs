@@ -10,6 +10,7 @@ use super::display::Display;
 use super::palette::Heat;
 use super::tally::Tally;
 use super::{Checker, Judge, Raster};
+use crate::rounding::to_single;
 
 /// Blocks of a picture, each a pixel of the maps.
 #[derive(Debug)]
@@ -162,7 +163,7 @@ impl Block {
     fn add(&mut self, rgb: [f32; 3], found: &Estimate) {
         (0..3).for_each(|k| self.sum[k] += units(rgb[k]));
         self.colors += 1;
-        let de2000 = single(found.de2000);
+        let de2000 = to_single(found.de2000);
         let worst = match found.kind {
             StandingKind::Reflectance => return,
             StandingKind::NeedsFluorescence => Worst::Fluorescence(de2000),
@@ -192,9 +193,4 @@ impl Block {
 #[expect(clippy::cast_sign_loss, reason = "it is clamped first")]
 fn units(value: f32) -> u64 {
     (f64::from(value.clamp(0.0, 1.0)) / UNIT) as u64
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "a map needs no more digits")]
-fn single(de2000: f64) -> f32 {
-    de2000 as f32
 }

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use upglow_color::{Colorimetry, Contract, LinearRgb, Matrix3, RgbSpace};
+use upglow_color::{Colorimetry, Contract, LinearRgb, Matrix3, RgbSpace, srgb_encoded};
 
 use crate::svg::byte;
 
@@ -62,13 +62,7 @@ impl Display {
             Self::Correct => {
                 let space = RgbSpace::named("srgb").expect("it is in the table");
                 let page = Contract { space, ..Contract::default() }.on(colorimetry.grid());
-                let column = |primary| colorimetry.xyz_from_rgb(LinearRgb(primary)).0;
-                let xyz_from_rgb = Matrix3::from_columns([
-                    column([1.0, 0.0, 0.0]),
-                    column([0.0, 1.0, 0.0]),
-                    column([0.0, 0.0, 1.0]),
-                ]);
-                page.rgb_from_xyz_matrix() * xyz_from_rgb
+                page.rgb_from_xyz_matrix() * colorimetry.xyz_from_rgb_matrix()
             }
         };
         Painter { srgb_from_rgb }
@@ -84,13 +78,8 @@ pub(crate) struct Painter {
 impl Painter {
     /// The sRGB bytes of a color, cut off at the page's gamut.
     pub(crate) fn paint(self, rgb: LinearRgb) -> [u8; 3] {
-        (self.srgb_from_rgb * rgb.0).map(|v| byte(255.0 * encoded(v.clamp(0.0, 1.0))))
+        (self.srgb_from_rgb * rgb.0).map(|v| byte(255.0 * srgb_encoded(v.clamp(0.0, 1.0))))
     }
-}
-
-/// The sRGB transfer curve, IEC 61966-2-1.
-fn encoded(linear: f64) -> f64 {
-    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
 #[cfg(test)]
