@@ -16,7 +16,7 @@ const ALLOWED: [(&str, &[&str]); 10] = [
         "upglow-cli",
         &["upglow-study", "upglow-image", "upglow-fit", "upglow-shader", "upglow", "upglow-color"],
     ),
-    ("upglow-python", &["upglow-fit", "upglow", "upglow-color"]),
+    ("upglow-python", &["upglow-study", "upglow-fit", "upglow", "upglow-color"]),
     ("upglow-c", &["upglow", "upglow-color"]),
     ("xtask", &[]),
 ];

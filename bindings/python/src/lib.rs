@@ -12,10 +12,12 @@ mod contract;
 mod cube;
 mod errors;
 mod evaluate;
+mod figures;
 mod fit;
 mod illuminant;
 mod materials;
 mod model;
+mod observer;
 mod rows;
 mod sampling;
 mod spectra;
@@ -36,6 +38,11 @@ mod _upglow {
     #[pymodule_export]
     use crate::cube::Cube;
     #[pymodule_export]
+    use crate::figures::{
+        chromaticity_diagram, dye_spectra, layer, mixed_reflectances, node_colors, reachability,
+        solid_surface,
+    };
+    #[pymodule_export]
     use crate::fit::{build, fit};
     #[pymodule_export]
     use crate::illuminant::Illuminant;
@@ -43,6 +50,8 @@ mod _upglow {
     use crate::materials::{corners, polish};
     #[pymodule_export]
     use crate::model::{DyeSet, Model};
+    #[pymodule_export]
+    use crate::observer::Observer;
     #[pymodule_export]
     use crate::rows::first_outside;
     #[pymodule_export]

@@ -1,6 +1,7 @@
 //! The paper's eight figures and two of our own, drawn from what is computed here.
 
 mod chromaticity;
+mod cut;
 mod display;
 mod dyes;
 mod features;

@@ -24,11 +24,13 @@ The library's own documentation, the file format and the physics: see the reposi
 ``docs/cube-format.md`` and ``docs/decisions``.
 """
 
+from . import figures
 from ._contract import Contract
 from ._cube import Cube, CubeCheck, CubeSummary, Samples, build
 from ._illuminant import Illuminant
 from ._materials import Corners, Materials
 from ._models import Analytic, Dye, Dyes, Reflectance
+from ._observer import Observer
 from ._standing import Kind, Standing, standing
 from ._upglow import __version__
 from ._verify import Check, VerifyReport
@@ -49,11 +51,13 @@ __all__ = [
     "Illuminant",
     "Kind",
     "Materials",
+    "Observer",
     "Reflectance",
     "Samples",
     "Standing",
     "VerifyReport",
     "__version__",
     "build",
+    "figures",
     "standing",
 ]

@@ -14,20 +14,28 @@ __all__ = [
     "DyeSet",
     "Illuminant",
     "Model",
+    "Observer",
     "__version__",
     "albedo",
     "build",
+    "chromaticity_diagram",
     "colors",
     "corners",
+    "dye_spectra",
     "elastic_probability",
     "first_outside",
     "fit",
+    "layer",
+    "mixed_reflectances",
+    "node_colors",
     "pdf_per_nm",
     "polish",
+    "reachability",
     "reflectance",
     "reradiation",
     "reradiation_matrix",
     "sample",
+    "solid_surface",
     "standing",
     "verify",
 ]
@@ -65,9 +73,30 @@ class Illuminant:
     def power(self) -> _Doubles: ...
 
 @final
+class Observer:
+    @staticmethod
+    def names() -> list[str]: ...
+    @staticmethod
+    def named(name: str) -> Observer: ...
+    @staticmethod
+    def from_csv(name: str, text: str) -> Observer: ...
+    @staticmethod
+    def from_samples(
+        name: str, wavelengths_nm: Sequence[float], matching: _Doubles
+    ) -> Observer: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def matching(self) -> _Doubles: ...
+
+@final
 class Contract:
     def __new__(
-        cls, space: str | Sequence[float], illuminant: Illuminant, adaptation: str
+        cls,
+        space: str | Sequence[float],
+        illuminant: Illuminant,
+        observer: Observer,
+        adaptation: str,
     ) -> Contract: ...
     @staticmethod
     def spaces() -> list[str]: ...
@@ -80,7 +109,7 @@ class Contract:
     @property
     def illuminant(self) -> Illuminant: ...
     @property
-    def observer(self) -> str: ...
+    def observer(self) -> Observer: ...
     @property
     def adaptation(self) -> str: ...
     @property
@@ -128,6 +157,7 @@ class Model:
 
 @final
 class Cube:
+    def model(self) -> Model: ...
     @staticmethod
     def read(path: str | os.PathLike[str]) -> Cube: ...
     @staticmethod
@@ -202,3 +232,23 @@ def verify(
     threads: int | None,
     report: _Report | None,
 ) -> tuple[int, int, bool, list[_Check]]: ...
+
+def chromaticity_diagram(
+    contract: Contract,
+) -> tuple[_Doubles, _Doubles, _Doubles, _Doubles]: ...
+def node_colors(cube: Cube, threads: int | None) -> tuple[_Doubles, _Doubles]: ...
+def layer(
+    cube: Cube, blue: float, side: int | None, interpolation: str, threads: int | None
+) -> tuple[float, _Doubles, _Doubles, NDArray[np.bool_]]: ...
+def dye_spectra(
+    model: Model, observer: Observer
+) -> tuple[list[str], _Doubles, _Doubles, _Doubles, _Doubles]: ...
+def reachability(
+    contract: Contract, blue: float, side: int, threads: int | None
+) -> NDArray[np.uint8]: ...
+def solid_surface(
+    contract: Contract, materials: str, steps: int, threads: int | None
+) -> tuple[_Doubles, _Doubles]: ...
+def mixed_reflectances(
+    first: Sequence[float], second: Sequence[float], mixing: str, shares: Sequence[float]
+) -> _Doubles: ...

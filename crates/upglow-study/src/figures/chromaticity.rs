@@ -1,11 +1,8 @@
 //! The CIE 1931 chromaticity diagram.
 
-use upglow_color::{Contract, Grid, Observer, Xyz};
-
+use crate::ChromaticityDiagram;
 use crate::svg::{Anchor, Axis, Drawing, Frame, INK, MUTED, Rect, Stroke, Text};
 
-/// The locus is drawn between these wavelengths, nm: beyond, the ends only pile up.
-const LOCUS_NM: [u32; 2] = [390, 700];
 /// Where the locus is marked, nm; 540 would lie on the corner of AP1.
 const MARKS_NM: [u32; 7] = [470, 480, 500, 520, 550, 570, 590];
 /// From the locus to the middle of a mark's number, mm.
@@ -23,18 +20,18 @@ pub(crate) fn frame(rect: Rect) -> Frame {
 }
 
 /// Spectral locus, line of purples, the triangle of the contract's primaries, and white.
-pub(crate) fn draw_landmarks(drawing: &mut Drawing, frame: &Frame, contract: &Contract) {
-    let locus = locus(&contract.observer);
+pub(crate) fn draw_landmarks(drawing: &mut Drawing, frame: &Frame, diagram: &ChromaticityDiagram) {
+    let ChromaticityDiagram { locus, primaries, white } = diagram;
     let ends = [locus[0].1, locus[locus.len() - 1].1].map(|xy| frame.point(xy));
     drawing.polyline(ends, PURPLES);
     drawing.polyline(locus.iter().map(|(_, xy)| frame.point(*xy)), LOCUS);
-    let white = contract.on(Grid::FINE).white().chromaticity().expect("white is bright");
+    let white = frame.point(*white);
     for (nm, xy) in locus.iter().filter(|(nm, _)| MARKS_NM.contains(nm)) {
-        draw_mark(drawing, *nm, frame.point(*xy), frame.point(white));
+        draw_mark(drawing, *nm, frame.point(*xy), white);
     }
-    let [r, g, b] = contract.space.primaries().map(|xy| frame.point(xy));
+    let [r, g, b] = primaries.map(|xy| frame.point(xy));
     drawing.polyline([r, g, b, r], TRIANGLE);
-    draw_plus(drawing, frame.point(white));
+    draw_plus(drawing, white);
 }
 
 /// A key to triangle and white, in the corner that the locus leaves free.
@@ -62,13 +59,4 @@ fn draw_mark(drawing: &mut Drawing, nm: u32, at: [f64; 2], white: [f64; 2]) {
     let text = nm.to_string();
     let middle = [at[0] + MARK_MM * u, at[1] + MARK_MM * v + 0.8];
     drawing.text(&Text::note(middle, &text).anchor(Anchor::Middle).color(MUTED).halo());
-}
-
-/// Wavelengths, nm, and their chromaticities.
-fn locus(observer: &Observer) -> Vec<(u32, [f64; 2])> {
-    let [first, last] = LOCUS_NM;
-    let grid = Grid::try_new(first, last, 1).expect("it rises");
-    let colors = observer.on(grid);
-    let points = (first..).zip(colors).map(|(nm, xyz)| Some((nm, Xyz(xyz).chromaticity()?)));
-    points.collect::<Option<_>>().expect("the observer sees all of them")
 }

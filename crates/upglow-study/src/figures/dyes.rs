@@ -1,11 +1,11 @@
 //! Figure 2: the dyes.
 
-use upglow::{DyeCurves, Model};
-use upglow_color::{Contract, Grid, Spectrum, Xyz};
+use upglow::Model;
+use upglow_color::{Contract, Grid, Spectrum};
 
 use super::{Figure, Studio, chromaticity};
 use crate::svg::{ABSORPTION, Anchor, Axis, Drawing, EMISSION, Frame, INK, Rect, Stroke, Text};
-use crate::{StudyCube, StudyError};
+use crate::{ChromaticityDiagram, DyeSpectra, StudyCube, StudyError, dye_spectra};
 
 /// The dyes whose spectra are shown, counted from 1 as in the paper.
 const SHOWN: [usize; 2] = [2, 6];
@@ -19,25 +19,26 @@ pub(super) fn figure_2(_: &Studio<'_>) -> Result<Figure, StudyError> {
     let Model::Dyes(model) = StudyCube::PAPER.model()? else {
         unreachable!("the paper's cube has dyes");
     };
-    let names: Vec<String> =
-        model.set().dyes().iter().map(|dye| dye.name.replace('_', " ")).collect();
-    let mut drawing = Drawing::new(HEIGHT_MM);
     let contract = Contract::default();
-    draw_diagram(&mut drawing, &contract, model.curves(), &names);
+    let dyes = dye_spectra(&model, &contract.observer);
+    let names: Vec<String> = dyes.iter().map(|dye| dye.name.replace('_', " ")).collect();
+    let mut drawing = Drawing::new(HEIGHT_MM);
+    draw_diagram(&mut drawing, &contract, &dyes, &names);
     for (row, dye) in SHOWN.into_iter().enumerate() {
-        let curves = &model.curves()[dye - 1];
         let letter = ["b", "c"][row];
         let title = format!("[{letter}] dye {dye}, {}", names[dye - 1]);
-        draw_spectra(&mut drawing, row, curves, &title);
+        draw_spectra(&mut drawing, row, &dyes[dye - 1], &title);
     }
     let peaks = |dye: usize| {
-        let curves = &model.curves()[dye - 1];
-        let [absorption, emission] = [&curves.absorption, &curves.emission].map(peak_nm);
-        format!("dye {dye} absorbs most at {absorption:.0} nm and emits most at {emission:.0} nm")
+        let DyeSpectra { absorption_peak_nm, emission_peak_nm, .. } = dyes[dye - 1];
+        format!(
+            "dye {dye} absorbs most at {absorption_peak_nm:.0} nm and emits most at \
+             {emission_peak_nm:.0} nm"
+        )
     };
     let listed: Vec<String> = (1..).zip(&names).map(|(i, name)| format!("{i} {name}")).collect();
-    let first = model.curves().iter().map(|c| peak_nm(&c.absorption)).fold(f64::MAX, f64::min);
-    let last = model.curves().iter().map(|c| peak_nm(&c.absorption)).fold(0.0, f64::max);
+    let first = dyes.iter().map(|dye| dye.absorption_peak_nm).fold(f64::MAX, f64::min);
+    let last = dyes.iter().map(|dye| dye.absorption_peak_nm).fold(0.0, f64::max);
     let caption = format!(
         "(a) Chromaticities of the emissions of the eight dyes, without non-fluorescent \
          reflection, in ring order: {}. Lines join the neighbors that a material may mix. (b, c) \
@@ -50,12 +51,18 @@ pub(super) fn figure_2(_: &Studio<'_>) -> Result<Figure, StudyError> {
     Ok(Figure::new(2, "dyes", drawing, caption))
 }
 
-fn draw_diagram(drawing: &mut Drawing, contract: &Contract, dyes: &[DyeCurves], names: &[String]) {
+fn draw_diagram(
+    drawing: &mut Drawing,
+    contract: &Contract,
+    dyes: &[DyeSpectra<'_>],
+    names: &[String],
+) {
     let frame = chromaticity::frame(DIAGRAM);
-    let matching = contract.observer.on(Grid::FINE);
-    let places: Vec<[f64; 2]> =
-        dyes.iter().map(|dye| frame.point(emission_chromaticity(dye, &matching))).collect();
-    chromaticity::draw_landmarks(drawing, &frame, contract);
+    let places: Vec<[f64; 2]> = dyes
+        .iter()
+        .map(|dye| frame.point(dye.emission_xy.expect("a dye's emission is visible")))
+        .collect();
+    chromaticity::draw_landmarks(drawing, &frame, &ChromaticityDiagram::of(contract));
     let ring = places.iter().chain(&places[..1]).copied();
     drawing.polyline(ring, Stroke::solid(EMISSION, 0.25));
     let center = frame.point([1.0 / 3.0, 1.0 / 3.0]);
@@ -90,15 +97,7 @@ fn draw_number(drawing: &mut Drawing, number: u32, at: [f64; 2], center: [f64; 2
     drawing.text(&Text::note([x, y + 0.8], &text).bold().anchor(Anchor::Middle).halo());
 }
 
-fn emission_chromaticity(dye: &DyeCurves, matching: &[[f64; 3]]) -> [f64; 2] {
-    let mut sum = [0.0; 3];
-    for (e, m) in dye.emission.values().iter().zip(matching) {
-        (0..3).for_each(|k| sum[k] += e * m[k]);
-    }
-    Xyz(sum).chromaticity().expect("a dye's emission is visible")
-}
-
-fn draw_spectra(drawing: &mut Drawing, row: usize, curves: &DyeCurves, title: &str) {
+fn draw_spectra(drawing: &mut Drawing, row: usize, dye: &DyeSpectra<'_>, title: &str) {
     let [width, height] = SPECTRA_MM;
     let top = DIAGRAM.top + if row == 0 { 0.0 } else { DIAGRAM.height - height };
     let wavelength = Axis::every("wavelength *λ* / nm", RANGE_NM, 50.0);
@@ -108,8 +107,10 @@ fn draw_spectra(drawing: &mut Drawing, row: usize, curves: &DyeCurves, title: &s
         y: Axis::every("relative value", [0.0, 1.08], 0.5),
     };
     drawing.clipped(frame.rect, |drawing| {
-        for (curve, color) in [(&curves.absorption, ABSORPTION), (&curves.emission, EMISSION)] {
-            draw_curve(drawing, &frame, curve, color);
+        let absorption = (dye.absorption, dye.absorption_peak_nm, ABSORPTION);
+        let emission = (dye.emission, dye.emission_peak_nm, EMISSION);
+        for (curve, peak_nm, color) in [absorption, emission] {
+            draw_curve(drawing, &frame, curve, peak_nm, color);
         }
     });
     draw_legend(drawing, &frame);
@@ -117,8 +118,14 @@ fn draw_spectra(drawing: &mut Drawing, row: usize, curves: &DyeCurves, title: &s
     frame.draw_title(drawing, title, "");
 }
 
-fn draw_curve(drawing: &mut Drawing, frame: &Frame, curve: &Spectrum, color: &'static str) {
-    let peak = curve.at(peak_nm(curve));
+fn draw_curve(
+    drawing: &mut Drawing,
+    frame: &Frame,
+    curve: &Spectrum,
+    peak_nm: f64,
+    color: &'static str,
+) {
+    let peak = curve.at(peak_nm);
     let samples = Grid::FINE.wavelengths_nm().zip(curve.values());
     let shown: Vec<[f64; 2]> = samples
         .filter(|(nm, _)| (RANGE_NM[0]..=RANGE_NM[1]).contains(nm))
@@ -138,9 +145,4 @@ fn draw_legend(drawing: &mut Drawing, frame: &Frame) {
         drawing.line([left, y - 0.8], [left + 4.0, y - 0.8], Stroke::solid(color, 0.5));
         drawing.text(&Text::note([left + 5.0, y], name).color(INK));
     }
-}
-
-fn peak_nm(curve: &Spectrum) -> f64 {
-    let samples = curve.grid().wavelengths_nm().zip(curve.values());
-    samples.max_by(|a, b| a.1.total_cmp(b.1)).map_or(0.0, |(nm, _)| nm)
 }

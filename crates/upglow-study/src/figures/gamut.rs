@@ -2,17 +2,15 @@
 
 use std::sync::Arc;
 
-use rayon::prelude::*;
-use upglow::{Cube, ModelOnGrid};
+use upglow::Cube;
 use upglow_color::{Colorimetry, Grid, Xyz};
 use upglow_fit::CubeSummary;
 
 use super::display::Painter;
 use super::sheet::{Sheet, draw_layer, errors_text};
 use super::{Figure, Studio, chromaticity, percent};
-use crate::layers::{Layer, nearest_node};
 use crate::svg::{Drawing, Rect};
-use crate::{StudyCube, StudyError, raster};
+use crate::{ChromaticityDiagram, Layer, StudyCube, StudyError, node_colors, raster};
 
 /// Blue of the layers shown.
 const BLUES: [f64; 2] = [5.0 / 31.0, 23.0 / 31.0];
@@ -89,7 +87,7 @@ fn draw_layers(
     let sheet = Sheet { rows: index + 1, ..*sheet };
     let panels = BLUES.into_iter().zip(row.letters).enumerate();
     let drawn = panels.map(|(column, (blue, letter))| {
-        let layer = Layer::of_nodes(&row.cube, nearest_node(row.cube.resolution(), blue));
+        let layer = Layer::of_nodes(&row.cube, Layer::nearest_node(row.cube.resolution(), blue));
         let title = format!("[{letter}] {}, *B* = {:.3}", row.model, layer.blue);
         let frame = sheet.layer_frame(index, column, &layer.whole());
         draw_layer(drawing, &frame, &layer.whole(), &title, painter);
@@ -113,7 +111,8 @@ fn draw_chromaticities(drawing: &mut Drawing, rect: Rect, row: &Row, painter: Pa
         .collect();
     let side = pixels(rect.width * PIXELS_PER_MM);
     drawing.pixels(rect, &raster::dots_png([side; 2], single(DOT_MM * PIXELS_PER_MM), &dots));
-    chromaticity::draw_landmarks(drawing, &frame, row.cube.contract());
+    let diagram = ChromaticityDiagram::of(row.cube.contract());
+    chromaticity::draw_landmarks(drawing, &frame, &diagram);
     chromaticity::draw_key(drawing, &frame, "AP1");
     frame.draw_axes(drawing);
     let title = format!("[{}] {}, all nodes", row.letters[2], row.model);
@@ -124,12 +123,9 @@ fn draw_chromaticities(drawing: &mut Drawing, rect: Rect, row: &Row, painter: Pa
 
 /// The colors of the nodes that are bright enough for the diagram.
 fn bright_colors(cube: &Cube, colorimetry: &Colorimetry) -> Vec<Xyz> {
-    let sums = ModelOnGrid::new(cube.model(), colorimetry);
-    (0..cube.nodes().len())
-        .into_par_iter()
-        .map(|node| sums.color(cube.node_material(node)))
-        .filter(|color| color.0.iter().sum::<f64>() >= BRIGHT)
-        .collect()
+    let mut colors = node_colors(cube, colorimetry);
+    colors.retain(|color| color.0.iter().sum::<f64>() >= BRIGHT);
+    colors
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "a place in a picture")]

@@ -6,9 +6,8 @@ use upglow_color::Grid;
 use super::display::Painter;
 use super::sheet::{Sheet, draw_points, errors_text, layers_page};
 use super::{Figure, Studio, percent};
-use crate::layers::Layer;
 use crate::svg::{Anchor, Drawing, PAGE_MM, Rect, Stroke, Text, error_color};
-use crate::{StudyCube, StudyError};
+use crate::{Layer, StudyCube, StudyError};
 
 const BLUE: f64 = 0.7;
 /// Points along each axis of a picture for each node of the cube.

@@ -1,12 +1,12 @@
 //! Figure 5: what lies between two reflectances.
 
-use upglow::{Features, Sigmoid};
+use upglow::Features;
 use upglow_color::{Contract, Grid, Lab};
 
 use super::sheet::swatch;
 use super::{Figure, Studio};
-use crate::StudyError;
 use crate::svg::{Anchor, Axis, Drawing, Frame, MUTED, Rect, Stroke, Text, WEIGHTS};
+use crate::{Mixing, StudyError};
 
 /// The two ends: a blue and an orange, both n-shaped.
 const FROM: Features = Features { shift_nm: 450.0, width_nm: 45.0, slope_per_nm: -0.009 };
@@ -22,47 +22,18 @@ const SWATCH_MM: [f64; 2] = [18.0, 6.2];
 const FOOT_MM: f64 = 8.2;
 const RANGE_NM: [f64; 2] = [380.0, 720.0];
 
-/// How the reflectances between the ends are made.
-#[derive(Clone, Copy, Debug)]
-enum Way {
-    Coefficients,
-    Spectra,
-    Features,
-}
-
 /// Shares of the second end.
 const SHARES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
-const ROWS: [(Way, &str); 3] = [
-    (Way::Coefficients, "[a] coefficients *c*_{0}, *c*_{1}, *c*_{2}"),
-    (Way::Spectra, "[b] spectra"),
-    (Way::Features, "[c] features *z*, *w*, *s*"),
+const ROWS: [(Mixing, &str); 3] = [
+    (Mixing::Coefficients, "[a] coefficients *c*_{0}, *c*_{1}, *c*_{2}"),
+    (Mixing::Spectra, "[b] spectra"),
+    (Mixing::Features, "[c] features *z*, *w*, *s*"),
 ];
 
-impl Way {
-    /// The reflectance with the share `weight` of the second end, on [`Grid::FINE`].
-    fn sample(self, weight: f64) -> Vec<f64> {
-        let mix = |a: f64, b: f64| (1.0 - weight) * a + weight * b;
-        let [from, to] = [FROM, TO].map(|f| f.to_sigmoid().expect("the slopes are not zero"));
-        let on_grid = |at: &dyn Fn(f64) -> f64| Grid::FINE.wavelengths_nm().map(at).collect();
-        match self {
-            Self::Spectra => on_grid(&|nm| mix(from.at(nm), to.at(nm))),
-            Self::Coefficients => {
-                let Sigmoid { c0, c1, c2 } = from;
-                let mean = Sigmoid { c0: mix(c0, to.c0), c1: mix(c1, to.c1), c2: mix(c2, to.c2) };
-                on_grid(&|nm| mean.at(nm))
-            }
-            Self::Features => {
-                let mean = Features {
-                    shift_nm: mix(FROM.shift_nm, TO.shift_nm),
-                    width_nm: mix(FROM.width_nm, TO.width_nm),
-                    slope_per_nm: mix(FROM.slope_per_nm, TO.slope_per_nm),
-                };
-                let mean = mean.to_sigmoid().expect("the slopes have one sign");
-                on_grid(&|nm| mean.at(nm))
-            }
-        }
-    }
+/// The reflectance with a share of the second end.
+fn sample(way: Mixing, share: f64) -> Vec<f64> {
+    way.sample([FROM, TO], share).expect("the slopes have one sign and are not zero")
 }
 
 pub(super) fn figure_5(studio: &Studio<'_>) -> Result<Figure, StudyError> {
@@ -72,7 +43,7 @@ pub(super) fn figure_5(studio: &Studio<'_>) -> Result<Figure, StudyError> {
     let mut halves = Vec::new();
     for (row, (way, title)) in (0_u32..).zip(ROWS) {
         let frame = frame(row);
-        let spectra = SHARES.map(|share| way.sample(share));
+        let spectra = SHARES.map(|share| sample(way, share));
         let colors = spectra.each_ref().map(|r| colorimetry.xyz_from_reflectance(r.clone()));
         draw_spectra(&mut drawing, &frame, &spectra);
         frame.draw_title(&mut drawing, title, "");

@@ -2,10 +2,10 @@
 
 use upglow_color::{Grid, Metric};
 
+use super::cut::Cut;
 use super::sheet::{Sheet, errors_text, layers_page};
 use super::{Figure, Studio};
-use crate::layers::{Cut, Layer, nearest_node};
-use crate::{StudyCube, StudyError};
+use crate::{Layer, StudyCube, StudyError};
 
 /// A cube by the paper's method and the name of its metric, for a drawing and for a caption.
 #[derive(Clone, Copy, Debug)]
@@ -37,7 +37,7 @@ impl Variant {
     fn layer(self, studio: &Studio<'_>, blue: f64) -> Result<Layer, StudyError> {
         let Self { metric, sweeps } = self;
         let cube = studio.cubes.get(StudyCube::Seed { metric, sweeps }, studio.watch)?;
-        Ok(Layer::of_nodes(&cube, nearest_node(cube.resolution(), blue)))
+        Ok(Layer::of_nodes(&cube, Layer::nearest_node(cube.resolution(), blue)))
     }
 }
 

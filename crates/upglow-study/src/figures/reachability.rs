@@ -1,13 +1,11 @@
 //! Figure 10: what any material can show.
 
-use rayon::prelude::*;
-use upglow_color::{ColorSolid, Colorimetry, Contract, Grid, LinearRgb};
+use upglow_color::Contract;
 
 use super::sheet::{Sheet, swatch};
 use super::{Figure, Studio, percent};
-use crate::StudyError;
-use crate::raster;
 use crate::svg::{Axis, Drawing, Frame, Rect, STANDINGS, Text, hex};
+use crate::{Reach, Reachability, StudyError, raster, shares};
 
 /// The layers shown, in 31sts, and what is written above them.
 const BLUES: [(f64, &str); 5] =
@@ -17,56 +15,8 @@ const NAMES: [&str; 3] = ["some reflectance", "only fluorescence", "no material"
 /// Points of a layer's picture from node to node.
 const POINTS_PER_STEP: usize = 4;
 
-/// What it takes to show a color: a number of [`STANDINGS`].
-struct Limits {
-    colorimetry: Colorimetry,
-    reflectance: ColorSolid,
-    fluorescence: ColorSolid,
-}
-
-impl Limits {
-    fn new(contract: &Contract) -> Self {
-        let colorimetry = contract.on(Grid::FIT);
-        let reflectance = ColorSolid::reflectance(&colorimetry);
-        let fluorescence = ColorSolid::fluorescence(&colorimetry);
-        Self { colorimetry, reflectance, fluorescence }
-    }
-
-    fn standing(&self, rgb: LinearRgb) -> usize {
-        let color = self.colorimetry.xyz_from_rgb(rgb);
-        if self.reflectance.contains(color) {
-            0
-        } else if self.fluorescence.contains(color) {
-            1
-        } else {
-            2
-        }
-    }
-
-    /// Where the points of a layer stand, `[green from 1 to 0][red]`.
-    fn layer(&self, blue: f64, side: usize) -> Vec<usize> {
-        let last = (side - 1) as f64;
-        let at = |i: usize| [i % side, side - 1 - i / side].map(|k| k as f64 / last);
-        (0..side * side)
-            .into_par_iter()
-            .map(|i| {
-                let [red, green] = at(i);
-                self.standing(LinearRgb([red, green, blue]))
-            })
-            .collect()
-    }
-}
-
-/// Shares of reflectance, fluorescence and nothing.
-fn shares<'s>(standings: impl IntoIterator<Item = &'s usize>) -> [f64; 3] {
-    let mut counts = [0.0; 3];
-    standings.into_iter().for_each(|&standing| counts[standing] += 1.0);
-    let all: f64 = counts.iter().sum();
-    counts.map(|count| count / all)
-}
-
 pub(super) fn figure_10(studio: &Studio<'_>) -> Result<Figure, StudyError> {
-    let limits = Limits::new(&Contract::default());
+    let limits = Reachability::of(&Contract::default());
     let nodes = studio.cubes.resolution();
     let side = POINTS_PER_STEP * (nodes - 1) + 1;
     let sheet =
@@ -81,7 +31,7 @@ pub(super) fn figure_10(studio: &Studio<'_>) -> Result<Figure, StudyError> {
         draw_layer(&mut drawing, &sheet, i, &standings, &title);
         parts.push(format!("B = {name}: {} / {} / {}", found[0], found[1], found[2]));
     }
-    let layers: Vec<Vec<usize>> =
+    let layers: Vec<Vec<Reach>> =
         (0..nodes).map(|blue| limits.layer(blue as f64 / (nodes - 1) as f64, nodes)).collect();
     draw_shares(&mut drawing, sheet.rect(1, 2), &layers);
     let all = shares(layers.iter().flatten()).map(percent);
@@ -106,7 +56,7 @@ fn draw_layer(
     drawing: &mut Drawing,
     sheet: &Sheet,
     index: usize,
-    standings: &[usize],
+    standings: &[Reach],
     title: &str,
 ) {
     let (row, column) = (index / sheet.columns, index % sheet.columns);
@@ -114,14 +64,16 @@ fn draw_layer(
     let (x, y) = (axis("red *R*"), axis("green *G*"));
     let frame = Frame { rect: sheet.rect(row, column), x, y };
     let side = standings.len().isqrt();
-    let colors: Vec<[u8; 3]> = standings.iter().map(|&standing| STANDINGS[standing]).collect();
+    // A picture begins with the greatest green.
+    let rows = standings.chunks(side).rev().flatten();
+    let colors: Vec<[u8; 3]> = rows.map(|&standing| STANDINGS[standing as usize]).collect();
     drawing.pixels(frame.rect, &raster::png(side, &colors));
     frame.draw_axes(drawing);
     frame.draw_title(drawing, title, "");
 }
 
 /// Shares over blue, one area above the other.
-fn draw_shares(drawing: &mut Drawing, rect: Rect, layers: &[Vec<usize>]) {
+fn draw_shares(drawing: &mut Drawing, rect: Rect, layers: &[Vec<Reach>]) {
     let frame = Frame {
         rect,
         x: Axis::every("blue *B*", [0.0, 1.0], 0.25),

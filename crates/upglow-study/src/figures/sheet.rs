@@ -1,7 +1,7 @@
 //! Panels of equal size in rows and columns, and layers of a cube in them.
 
+use crate::figures::cut::Cut;
 use crate::figures::display::Painter;
-use crate::layers::Cut;
 use crate::raster;
 use crate::svg::{Axis, Drawing, Frame, PAGE_MM, Rect, hex};
 

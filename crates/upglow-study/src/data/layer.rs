@@ -7,32 +7,36 @@ use upglow_fit::CubeSummary;
 
 /// Colors over red and green at one blue: of the nodes, or of a denser grid between them.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Layer {
+pub struct Layer {
     /// Blue, 0..=1.
-    pub(crate) blue: f64,
+    pub blue: f64,
     /// Points along red and green; point i stands for i / (side − 1).
-    pub(crate) side: usize,
+    pub side: usize,
     /// What is shown, `[green][red]`; any finite numbers.
-    pub(crate) colors: Vec<LinearRgb>,
+    pub colors: Vec<LinearRgb>,
     /// CIEDE2000 from what is asked for, `[green][red]`.
-    pub(crate) de2000: Vec<f64>,
+    pub de2000: Vec<f64>,
     /// Whether all nodes that take part match their colors within 0.01 CIEDE2000, `[green][red]`.
-    pub(crate) has_exact_nodes: Vec<bool>,
-}
-
-/// The node of an axis nearest to a value, 0..=1.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "the value is in 0..=1, and rounding is what it is for"
-)]
-pub(crate) fn nearest_node(resolution: usize, value: f64) -> usize {
-    (value * (resolution - 1) as f64).round() as usize
+    pub has_exact_nodes: Vec<bool>,
 }
 
 impl Layer {
+    /// The node of an axis nearest to a value, 0..=1.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "the value is in 0..=1, and rounding is what it is for"
+    )]
+    pub fn nearest_node(resolution: usize, value: f64) -> usize {
+        (value * (resolution - 1) as f64).round() as usize
+    }
+
     /// The nodes of layer `blue_index`.
-    pub(crate) fn of_nodes(cube: &Cube, blue_index: usize) -> Self {
+    ///
+    /// # Panics
+    ///
+    /// If there is no such layer.
+    pub fn of_nodes(cube: &Cube, blue_index: usize) -> Self {
         let side = cube.resolution();
         let blue = blue_index as f64 / (side - 1) as f64;
         Self::sampled(cube, blue, side, |_, index| {
@@ -42,7 +46,11 @@ impl Layer {
     }
 
     /// A grid of `side`² colors at `blue`, 0..=1, whatever nodes there are.
-    pub(crate) fn between_nodes(
+    ///
+    /// # Panics
+    ///
+    /// If `blue` is no number from 0 to 1, or `side` is below 2.
+    pub fn between_nodes(
         cube: &Cube,
         blue: f64,
         side: usize,
@@ -81,21 +89,9 @@ impl Layer {
     }
 
     /// Greatest CIEDE2000 where all nodes that take part are exact; 0 where none are.
-    pub(crate) fn worst_between_exact(&self) -> f64 {
+    pub fn worst_between_exact(&self) -> f64 {
         let pairs = self.de2000.iter().zip(&self.has_exact_nodes);
         pairs.filter(|(_, exact)| **exact).map(|(d, _)| *d).fold(0.0, f64::max)
-    }
-
-    /// The part with red and green of at least `low` and at most `high`, by whole points.
-    pub(crate) fn cut(&self, red: [f64; 2], green: [f64; 2]) -> Cut<'_> {
-        let index = |value| nearest_node(self.side, value);
-        let [red, green] = [red, green].map(|[low, high]| [index(low), index(high)]);
-        Cut { layer: self, red, green }
-    }
-
-    /// All of it.
-    pub(crate) fn whole(&self) -> Cut<'_> {
-        self.cut([0.0, 1.0], [0.0, 1.0])
     }
 }
 
@@ -105,45 +101,6 @@ fn has_exact_nodes(cube: &Cube, rgb: LinearRgb) -> bool {
         .into_iter()
         .filter(|&(_, weight)| weight > 0.0)
         .all(|(index, _)| f64::from(cube.nodes()[index].de2000) <= CubeSummary::EXACT_DE2000)
-}
-
-/// A rectangle of the points of a layer, both ends included.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Cut<'l> {
-    pub(crate) layer: &'l Layer,
-    /// First and last point along red.
-    pub(crate) red: [usize; 2],
-    /// First and last point along green.
-    pub(crate) green: [usize; 2],
-}
-
-impl Cut<'_> {
-    /// Points along red.
-    pub(crate) fn columns(&self) -> usize {
-        self.red[1] - self.red[0] + 1
-    }
-
-    /// Points along green.
-    pub(crate) fn rows(&self) -> usize {
-        self.green[1] - self.green[0] + 1
-    }
-
-    /// The points' numbers in the layer as a picture has them: greatest green first.
-    pub(crate) fn picture(&self) -> impl Iterator<Item = usize> + '_ {
-        let [first, last] = self.green;
-        let row = move |green: usize| {
-            (self.red[0]..=self.red[1]).map(move |red| green * self.layer.side + red)
-        };
-        (first..=last).rev().flat_map(row)
-    }
-
-    /// Mean CIEDE2000, and the share within 1, of the points.
-    pub(crate) fn errors(&self) -> (f64, f64) {
-        let found: Vec<f64> = self.picture().map(|i| self.layer.de2000[i]).collect();
-        let count = found.len() as f64;
-        let within = found.iter().filter(|&&d| d <= 1.0).count() as f64;
-        (found.iter().sum::<f64>() / count, within / count)
-    }
 }
 
 #[cfg(test)]
@@ -171,14 +128,5 @@ mod tests {
         let nodes = Layer::of_nodes(&cube, 0);
         let dense = Layer::between_nodes(&cube, 0.0, 7, Interpolation::Blend);
         assert_eq!(dense.colors[14], nodes.colors[4]);
-    }
-
-    #[test]
-    fn pictures_start_with_the_greatest_green() {
-        let cube = Cubes::new(4).get(StudyCube::Reference, &Unwatched).unwrap();
-        let layer = Layer::of_nodes(&cube, 0);
-        let cut = layer.cut([1.0 / 3.0, 1.0], [0.0, 1.0 / 3.0]);
-        assert_eq!((cut.columns(), cut.rows()), (3, 2));
-        assert_eq!(cut.picture().collect::<Vec<_>>(), [5, 6, 7, 1, 2, 3]);
     }
 }

@@ -1,0 +1,53 @@
+//! What a chromaticity diagram has before any color is in it.
+
+use upglow_color::{Contract, Grid, Xyz};
+
+/// Locus, primaries and white of a contract, in the diagram of its observer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChromaticityDiagram {
+    /// Wavelengths, nm, and chromaticities (x, y) of the lights of one wavelength, by 1 nm.
+    pub locus: Vec<(u32, [f64; 2])>,
+    /// Chromaticities of the space's red, green and blue, as the space gives them.
+    pub primaries: [[f64; 2]; 3],
+    /// Chromaticity of the perfect diffuser under the contract's light.
+    pub white: [f64; 2],
+}
+
+/// The locus is taken between these wavelengths, nm: beyond, its ends only pile up.
+const LOCUS_NM: [u32; 2] = [390, 700];
+
+impl ChromaticityDiagram {
+    /// The diagram of a contract. Wavelengths that the observer does not see are left out.
+    pub fn of(contract: &Contract) -> Self {
+        let [first, last] = LOCUS_NM;
+        let grid = Grid::try_new(first, last, 1).expect("it rises");
+        let colors = contract.observer.on(grid);
+        let points = (first..).zip(colors).map(|(nm, xyz)| Some((nm, Xyz(xyz).chromaticity()?)));
+        let white = contract.on(Grid::FINE).white().chromaticity();
+        Self {
+            locus: points.flatten().collect(),
+            primaries: contract.space.primaries(),
+            white: white.expect("a contract's white is bright"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_locus_has_the_published_chromaticities() {
+        // `cie015`, table T.6: five printed digits.
+        const PUBLISHED: [(u32, [f64; 2]); 3] =
+            [(450, [0.156_64, 0.017_71]), (520, [0.074_30, 0.833_80]), (600, [0.627_04, 0.372_49])];
+        let diagram = ChromaticityDiagram::of(&Contract::default());
+        assert_eq!(diagram.locus.len(), 311);
+        for (nm, expected) in PUBLISHED {
+            let (_, found) = diagram.locus.iter().find(|(at, _)| *at == nm).unwrap();
+            for k in 0..2 {
+                assert!((found[k] - expected[k]).abs() < 1e-5, "{nm}: {found:?}");
+            }
+        }
+    }
+}
