@@ -11,6 +11,7 @@ mod programs;
 
 pub(crate) use header::write as write_header;
 pub(crate) use install::install;
+pub(crate) use programs::missing;
 
 /// Where the library's sources are, below the workspace's root.
 const FOLDER: &str = "bindings/c";
@@ -31,5 +32,12 @@ fn scratch(root: &Path) -> Result<PathBuf, StepError> {
 }
 
 fn installs(root: &Path) -> Result<Outcome, StepError> {
-    install(root, &scratch(root)?.join("prefix")).map(|_| Outcome::Passed)
+    prefix(root).map(|_| Outcome::Passed)
+}
+
+/// Installs the library for checks; below which folder.
+pub(crate) fn prefix(root: &Path) -> Result<PathBuf, StepError> {
+    let prefix = scratch(root)?.join("prefix");
+    install(root, &prefix)?;
+    Ok(prefix)
 }

@@ -11,7 +11,7 @@ use divan::counter::ItemsCount;
 use upglow::{Cube, DyeModel, DyeOptions, DyeSet, Edge, FitRecord, Fluorescence, Model, Node};
 use upglow_c::{
     UpglowCube, UpglowMaterial, UpglowStatus, upglow_cube_from_memory, upglow_look_up,
-    upglow_message, upglow_reflectance_4,
+    upglow_look_up_many, upglow_message, upglow_reflectance_4,
 };
 use upglow_color::Contract;
 
@@ -104,6 +104,39 @@ fn look_up(bencher: Bencher, kind: Kind) {
         for rgb in &colors {
             // SAFETY: the pointers are those of a live cube, an array and a variable.
             black_box(unsafe { function(cube, rgb.as_ptr(), material.as_mut_ptr()) });
+        }
+    });
+}
+
+/// Colors that are looked up at once: their materials fit into a core's own cache.
+const BATCH: usize = 256;
+
+#[divan::bench(args = KINDS)]
+fn look_up_many(bencher: Bencher, kind: Kind) {
+    let (cube, colors) = (handle(kind), colors());
+    let function = black_box(upglow_look_up_many as unsafe extern "C" fn(_, _, _, _, _) -> _);
+    let mut materials = vec![std::mem::MaybeUninit::<UpglowMaterial>::zeroed(); BATCH];
+    let mut outside = 0_usize;
+    bencher.counter(ItemsCount::new(CALLS)).bench_local(|| {
+        for rgb in colors.chunks(BATCH) {
+            let (rgb, to) = (rgb.as_ptr().cast(), materials.as_mut_ptr().cast());
+            // SAFETY: the pointers are those of a live cube, of arrays and of a variable.
+            black_box(unsafe { function(cube, rgb, to, BATCH, &raw mut outside) });
+        }
+    });
+}
+
+/// The same, one by one.
+#[divan::bench(args = KINDS)]
+fn look_up_into_an_array(bencher: Bencher, kind: Kind) {
+    let (cube, colors) = (handle(kind), colors());
+    let function = black_box(upglow_look_up as unsafe extern "C" fn(_, _, _) -> _);
+    let mut materials = vec![std::mem::MaybeUninit::<UpglowMaterial>::zeroed(); BATCH];
+    bencher.counter(ItemsCount::new(CALLS)).bench_local(|| {
+        for (rgb, material) in colors.iter().zip((0..BATCH).cycle()) {
+            let to = materials[material].as_mut_ptr();
+            // SAFETY: the pointers are those of a live cube, of an array and of a variable.
+            black_box(unsafe { function(cube, rgb.as_ptr(), to) });
         }
     });
 }

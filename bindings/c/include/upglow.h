@@ -15,8 +15,8 @@
 // Units: wavelengths are in nm, densities in 1/nm, colors linear. The rest has no unit.
 // Failure: functions return UpglowStatus and write their answer to the place that a pointer names,
 //     or leave it untouched on failure; upglow_message() then says why. No input ends the program.
-// Memory: upglow_cube_open, upglow_cube_from_memory and upglow_colors_create allocate, and their
-//     destroy functions free. Nothing else does either.
+// Memory: upglow_cube_open, upglow_cube_from_memory, upglow_colors_create and
+//     upglow_colors_create_sampled allocate, and the destroy functions free. Nothing else does either.
 // Threads: cubes, colors and materials never change once they are made, and threads may share them.
 //     Destroying one while another thread uses it, or writing a material while another reads it, is
 //     the caller's to prevent. Messages are each thread's own.
@@ -84,9 +84,9 @@ typedef struct {
     bool fluoresces;
     // Name of the RGB space, whose components are linear.
     const char *rgb_space;
-    // CIE 1931 x and y of the space's red, green and blue.
+    // x and y of the space's red, green and blue, as it is standardized: CIE 1931 2 degrees.
     double primaries[3][2];
-    // CIE 1931 x and y of the space's white.
+    // x and y of the space's white, likewise.
     double white[2];
     // Name of the light that RGB is seen under, as in "D65".
     const char *illuminant;
@@ -188,6 +188,21 @@ UpglowStatus upglow_cube_facts(const UpglowCube *cube, UpglowCubeFacts *facts);
 //
 // Pointers are null or point to a cube, to 3 values and to room for a material.
 UpglowStatus upglow_look_up(const UpglowCube *cube, const float rgb[3], UpglowMaterial *material);
+
+// Looks up the materials of `count` colors.
+//
+// `rgb` is `[count][3]`: red, green, blue of each color in turn, linear, in the cube's space; `materials`
+// is `[count]`, and must not overlap it. It allocates nothing. A color outside the cube, or not a
+// number, has no material: it gets an empty one, all zeros, which is refused wherever it is used; the
+// others are right, and `*outside`, unless `outside` is null, receives how many those are.
+//
+// Pointers are null or point to a cube, to 3 times `count` values, to room for `count` materials and
+// to room for a number.
+UpglowStatus upglow_look_up_many(const UpglowCube *cube,
+                                 const float *rgb,
+                                 UpglowMaterial *materials,
+                                 size_t count,
+                                 size_t *outside);
 
 // Whether any light comes back at another wavelength.
 //
@@ -295,7 +310,8 @@ UpglowStatus upglow_outgoing_elastic_probability(const UpglowMaterial *material,
 // `*colors` receives colors that the caller owns and gives back to `upglow_colors_destroy`. All
 // memory that `upglow_xyz` needs is allocated here: 16 bytes for each node of the cube.
 //
-// Fails with `UPGLOW_STATUS_INVALID_ARGUMENT` if there is no such light.
+// Fails with `UPGLOW_STATUS_INVALID_ARGUMENT` if there is no such light, or the cube's observer does
+// not see it.
 //
 // Pointers are null or point to a cube, to text that ends with a zero byte and to room for a
 // pointer.
@@ -303,13 +319,30 @@ UpglowStatus upglow_colors_create(const UpglowCube *cube,
                                   const char *illuminant,
                                   UpglowColors **colors);
 
+// Computes the colors of a cube's materials under a light that was measured.
+//
+// `lambda_nm` and `power` are `[count]`: wavelengths (nm) that ascend from 300 or below to 830 or
+// above in steps of at most 10, and the light's relative power at each, 0 or more. Both are copied.
+// `*colors` receives colors as from `upglow_colors_create`.
+//
+// Fails with `UPGLOW_STATUS_INVALID_ARGUMENT` if the samples are no light, or one that the cube's
+// observer does not see; the message names the index, from 0.
+//
+// Pointers are null or point to a cube, to `count` values each and to room for a pointer.
+UpglowStatus upglow_colors_create_sampled(const UpglowCube *cube,
+                                          const float *lambda_nm,
+                                          const float *power,
+                                          size_t count,
+                                          UpglowColors **colors);
+
 // Frees colors; null is allowed and does nothing. No other thread may be using them.
 //
-// `colors` is null or came from `upglow_colors_create`, and was not destroyed before.
+// `colors` is null or came from `upglow_colors_create` or `upglow_colors_create_sampled`, and was
+// not destroyed before.
 void upglow_colors_destroy(UpglowColors *colors);
 
-// CIE 1931 X, Y and Z of the materials of `count` colors, where Y of the perfect diffuser under
-// the light is 1.
+// X, Y and Z of the materials of `count` colors, as the cube's observer sees them; Y of the perfect
+// diffuser under the light is 1.
 //
 // `rgb` and `xyz` are `[count][3]`: red, green, blue of each color in turn, linear, in the cube's
 // space; X, Y, Z of each in turn. They must not overlap. A color outside the cube, or not a number,

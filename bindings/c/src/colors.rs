@@ -7,7 +7,7 @@ use upglow_color::{Contract, Grid, Illuminant};
 
 use crate::cube::UpglowCube;
 use crate::failure::{Failure, UpglowStatus, guarded};
-use crate::pointer::{Output, borrowed, slice, slice_mut, text};
+use crate::pointer::{Output, borrowed, refuse_overlap, slice, slice_mut, text};
 
 /// The colors that the materials of a cube have under one light. It never changes: any number of
 /// threads may use it at once. It does not need its cube any more.
@@ -26,7 +26,8 @@ const _: () = shared_by_threads::<UpglowColors>();
 /// `*colors` receives colors that the caller owns and gives back to `upglow_colors_destroy`. All
 /// memory that `upglow_xyz` needs is allocated here: 16 bytes for each node of the cube.
 ///
-/// Fails with `UPGLOW_STATUS_INVALID_ARGUMENT` if there is no such light.
+/// Fails with `UPGLOW_STATUS_INVALID_ARGUMENT` if there is no such light, or the cube's observer does
+/// not see it.
 ///
 /// # Safety
 ///
@@ -41,14 +42,51 @@ pub unsafe extern "C" fn upglow_colors_create(
     guarded(|| {
         // SAFETY: the caller keeps this function's promise.
         let (cube, output) = unsafe { (borrowed(cube, "cube")?, Output::new(colors, "colors")?) };
-        let mut contract = cube.cube.contract().clone();
-        if !illuminant.is_null() {
+        let light = match illuminant.is_null() {
+            true => cube.cube.contract().illuminant.clone(),
             // SAFETY: the same.
-            contract.illuminant = named(unsafe { text(illuminant, "illuminant")? })?;
-        }
-        output.write(Box::into_raw(UpglowColors::new(cube, &contract)));
+            false => named(unsafe { text(illuminant, "illuminant")? })?,
+        };
+        output.write(Box::into_raw(UpglowColors::try_new(cube, light)?));
         Ok(())
     })
+}
+
+/// Computes the colors of a cube's materials under a light that was measured.
+///
+/// `lambda_nm` and `power` are `[count]`: wavelengths (nm) that ascend from 300 or below to 830 or
+/// above in steps of at most 10, and the light's relative power at each, 0 or more. Both are copied.
+/// `*colors` receives colors as from `upglow_colors_create`.
+///
+/// Fails with `UPGLOW_STATUS_INVALID_ARGUMENT` if the samples are no light, or one that the cube's
+/// observer does not see; the message names the index, from 0.
+///
+/// # Safety
+///
+/// Pointers are null or point to a cube, to `count` values each and to room for a pointer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn upglow_colors_create_sampled(
+    cube: *const UpglowCube,
+    lambda_nm: *const f32,
+    power: *const f32,
+    count: usize,
+    colors: *mut *mut UpglowColors,
+) -> UpglowStatus {
+    guarded(|| {
+        // SAFETY: the caller keeps this function's promise.
+        let (cube, output) = unsafe { (borrowed(cube, "cube")?, Output::new(colors, "colors")?) };
+        // SAFETY: the same.
+        let (nm, power) =
+            unsafe { (slice(lambda_nm, count, "lambda_nm")?, slice(power, count, "power")?) };
+        let [nm, power] = [nm, power].map(doubles);
+        let light = Illuminant::from_samples("sampled", &nm, &power)?;
+        output.write(Box::into_raw(UpglowColors::try_new(cube, light)?));
+        Ok(())
+    })
+}
+
+fn doubles(values: &[f32]) -> Vec<f64> {
+    values.iter().map(|&value| f64::from(value)).collect()
 }
 
 fn named(illuminant: &CStr) -> Result<Illuminant, Failure> {
@@ -57,8 +95,10 @@ fn named(illuminant: &CStr) -> Result<Illuminant, Failure> {
 }
 
 impl UpglowColors {
-    fn new(cube: &UpglowCube, contract: &Contract) -> Box<Self> {
-        Box::new(Self { table: cube.cube.color_table(&contract.on(Grid::FIT)) })
+    fn try_new(cube: &UpglowCube, illuminant: Illuminant) -> Result<Box<Self>, Failure> {
+        let contract = Contract { illuminant, ..cube.cube.contract().clone() };
+        contract.check()?;
+        Ok(Box::new(Self { table: cube.cube.color_table(&contract.on(Grid::FIT)) }))
     }
 }
 
@@ -66,7 +106,8 @@ impl UpglowColors {
 ///
 /// # Safety
 ///
-/// `colors` is null or came from `upglow_colors_create`, and was not destroyed before.
+/// `colors` is null or came from `upglow_colors_create` or `upglow_colors_create_sampled`, and was
+/// not destroyed before.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn upglow_colors_destroy(colors: *mut UpglowColors) {
     guarded(|| {
@@ -78,8 +119,8 @@ pub unsafe extern "C" fn upglow_colors_destroy(colors: *mut UpglowColors) {
     });
 }
 
-/// CIE 1931 X, Y and Z of the materials of `count` colors, where Y of the perfect diffuser under
-/// the light is 1.
+/// X, Y and Z of the materials of `count` colors, as the cube's observer sees them; Y of the perfect
+/// diffuser under the light is 1.
 ///
 /// `rgb` and `xyz` are `[count][3]`: red, green, blue of each color in turn, linear, in the cube's
 /// space; X, Y, Z of each in turn. They must not overlap. A color outside the cube, or not a number,
@@ -98,7 +139,7 @@ pub unsafe extern "C" fn upglow_xyz(
     outside: *mut usize,
 ) -> UpglowStatus {
     guarded(|| {
-        refuse_overlap(rgb, xyz, count)?;
+        refuse_overlap(rgb, xyz.cast::<[f32; 3]>(), count, "xyz")?;
         let mut ignored = 0;
         let outside = if outside.is_null() { &raw mut ignored } else { outside };
         // SAFETY: the caller keeps this function's promise, and the arrays do not overlap.
@@ -111,29 +152,4 @@ pub unsafe extern "C" fn upglow_xyz(
         output.write(colors.table.xyz(rgb, xyz).expect("both arrays have `count` colors"));
         Ok(())
     })
-}
-
-/// Rust takes what it reads and what it writes to be apart.
-fn refuse_overlap(rgb: *const f32, xyz: *const f32, count: usize) -> Result<(), Failure> {
-    let bytes = count.saturating_mul(size_of::<[f32; 3]>());
-    if bytes > 0 && !rgb.is_null() && rgb.addr().abs_diff(xyz.addr()) < bytes {
-        return Err(Failure::Overlap);
-    }
-    Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn arrays_that_share_a_byte_overlap_and_neighbors_do_not() {
-        let at = std::ptr::without_provenance::<f32>;
-        assert!(refuse_overlap(at(1000), at(1024), 2).is_ok());
-        assert!(refuse_overlap(at(1024), at(1000), 2).is_ok());
-        assert!(refuse_overlap(at(1000), at(1000), 0).is_ok());
-        for overlapping in [1000, 1020, 980] {
-            assert!(refuse_overlap(at(1000), at(overlapping), 2).is_err());
-        }
-    }
 }

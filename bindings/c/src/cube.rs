@@ -39,9 +39,9 @@ pub struct UpglowCubeFacts {
     pub fluoresces: bool,
     /// Name of the RGB space, whose components are linear.
     pub rgb_space: *const c_char,
-    /// CIE 1931 x and y of the space's red, green and blue.
+    /// x and y of the space's red, green and blue, as it is standardized: CIE 1931 2 degrees.
     pub primaries: [[f64; 2]; 3],
-    /// CIE 1931 x and y of the space's white.
+    /// x and y of the space's white, likewise.
     pub white: [f64; 2],
     /// Name of the light that RGB is seen under, as in "D65".
     pub illuminant: *const c_char,

@@ -7,7 +7,7 @@ use std::fmt::{self, Write};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use upglow::{LookupError, ReadCubeError};
-use upglow_color::IlluminantError;
+use upglow_color::{ContractError, IlluminantError};
 
 /// How a call ended. On any status but `UPGLOW_STATUS_OK` what the call would have written is
 /// untouched, and `upglow_message` says why.
@@ -43,14 +43,16 @@ pub(crate) enum Failure {
     NotText { argument: &'static str },
     #[error("material is empty, expected one that upglow_look_up filled")]
     EmptyMaterial,
-    #[error("xyz overlaps rgb, expected memory of its own")]
-    Overlap,
+    #[error("{argument} overlaps rgb, expected memory of its own")]
+    Overlap { argument: &'static str },
     #[error(transparent)]
     Cube(#[from] ReadCubeError),
     #[error(transparent)]
     Lookup(#[from] LookupError),
     #[error(transparent)]
     Illuminant(#[from] IlluminantError),
+    #[error(transparent)]
+    Contract(#[from] ContractError),
 }
 
 impl Failure {
@@ -185,7 +187,10 @@ mod tests {
 
     #[test]
     fn a_message_is_its_threads_own_and_outlasts_success() {
-        assert_eq!(guarded(|| Err(Failure::Overlap)), UpglowStatus::InvalidArgument);
+        assert_eq!(
+            guarded(|| Err(Failure::Overlap { argument: "xyz" })),
+            UpglowStatus::InvalidArgument
+        );
         std::thread::spawn(|| assert_eq!(message(), "")).join().unwrap();
         assert_eq!(guarded(|| Ok(())), UpglowStatus::Ok);
         assert_eq!(message(), "xyz overlaps rgb, expected memory of its own");

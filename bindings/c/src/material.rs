@@ -6,7 +6,7 @@ use upglow::Blend;
 
 use crate::cube::UpglowCube;
 use crate::failure::{Failure, UpglowStatus, guarded};
-use crate::pointer::{Output, array, borrowed};
+use crate::pointer::{Output, array, borrowed, refuse_overlap, slice, slice_mut};
 
 /// The material of one color, in memory of the caller's own: on the stack, in an array, in another
 /// struct. Nothing is allocated for it and nothing is to be freed. It may be copied.
@@ -82,6 +82,62 @@ pub unsafe extern "C" fn upglow_look_up(
         output.write(Filled { mark: MARK, blend: cube.table.blend(rgb)? });
         Ok(())
     })
+}
+
+/// Looks up the materials of `count` colors.
+///
+/// `rgb` is `[count][3]`: red, green, blue of each color in turn, linear, in the cube's space; `materials`
+/// is `[count]`, and must not overlap it. It allocates nothing. A color outside the cube, or not a
+/// number, has no material: it gets an empty one, all zeros, which is refused wherever it is used; the
+/// others are right, and `*outside`, unless `outside` is null, receives how many those are.
+///
+/// # Safety
+///
+/// Pointers are null or point to a cube, to 3 times `count` values, to room for `count` materials and
+/// to room for a number.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn upglow_look_up_many(
+    cube: *const UpglowCube,
+    rgb: *const f32,
+    materials: *mut UpglowMaterial,
+    count: usize,
+    outside: *mut usize,
+) -> UpglowStatus {
+    guarded(|| {
+        refuse_overlap(rgb, materials, count, "materials")?;
+        let mut ignored = 0;
+        let outside = if outside.is_null() { &raw mut ignored } else { outside };
+        // SAFETY: the caller keeps this function's promise, and the arrays do not overlap.
+        let (cube, rgb) =
+            unsafe { (borrowed(cube, "cube")?, slice(rgb.cast::<[f32; 3]>(), count, "rgb")?) };
+        // SAFETY: the same; a material may hold anything, as nothing of it is promised.
+        let (materials, output) = unsafe {
+            (slice_mut(materials, count, "materials")?, Output::new(outside, "outside")?)
+        };
+        let mut absent = 0;
+        for (rgb, material) in rgb.iter().zip(materials) {
+            match cube.table.blend(*rgb) {
+                Ok(blend) => material.fill(blend),
+                Err(_) => {
+                    *material = UpglowMaterial::EMPTY;
+                    absent += 1;
+                }
+            }
+        }
+        output.write(absent);
+        Ok(())
+    })
+}
+
+impl UpglowMaterial {
+    /// One that every function refuses.
+    const EMPTY: Self = Self { words: [MaybeUninit::new(0); 32] };
+
+    fn fill(&mut self, blend: Blend<'_>) {
+        let filled: *mut Filled<'_> = std::ptr::from_mut(self).cast();
+        // SAFETY: a material has room for `Filled`, and its alignment.
+        unsafe { filled.write(Filled { mark: MARK, blend }) };
+    }
 }
 
 /// Whether any light comes back at another wavelength.

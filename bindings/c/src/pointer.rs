@@ -91,6 +91,23 @@ fn fits<T>(length: usize, argument: &'static str) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Refuses to write `count` values where as many colors are read: Rust takes the two to be apart.
+pub(crate) fn refuse_overlap<T>(
+    rgb: *const f32,
+    written: *const T,
+    count: usize,
+    argument: &'static str,
+) -> Result<(), Failure> {
+    let [read, write] =
+        [size_of::<[f32; 3]>(), size_of::<T>()].map(|size| count.saturating_mul(size));
+    let (rgb, written) = (rgb.addr(), written.addr());
+    let apart = rgb.saturating_add(read) <= written || written.saturating_add(write) <= rgb;
+    if count == 0 || rgb == 0 || written == 0 || apart {
+        return Ok(());
+    }
+    Err(Failure::Overlap { argument })
+}
+
 /// Text that ends with a zero byte.
 ///
 /// # Safety
@@ -149,6 +166,21 @@ mod tests {
         // SAFETY: a misaligned pointer is refused.
         let odd = unsafe { array::<f32, 3>(odd, "rgb") }.unwrap_err();
         assert_eq!(odd.to_string(), "rgb is at address 0x1002, expected a multiple of 4");
+    }
+
+    #[test]
+    fn arrays_that_share_a_byte_overlap_and_neighbors_do_not() {
+        let at = std::ptr::without_provenance::<f32>;
+        let xyz =
+            |rgb, xyz, count| refuse_overlap::<[f32; 3]>(at(rgb), at(xyz).cast(), count, "xyz");
+        assert!(xyz(1000, 1024, 2).is_ok() && xyz(1024, 1000, 2).is_ok());
+        assert!(xyz(1000, 1000, 0).is_ok());
+        for overlapping in [1000, 1020, 980] {
+            assert!(xyz(1000, overlapping, 2).is_err());
+        }
+        let wide = |rgb, written| refuse_overlap::<[u64; 32]>(at(rgb), at(written).cast(), 2, "x");
+        assert!(wide(1512, 1000).is_ok() && wide(1508, 1000).is_err());
+        assert!(wide(1000, 1024).is_ok() && wide(1000, 1020).is_err());
     }
 
     #[test]

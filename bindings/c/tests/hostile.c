@@ -62,6 +62,9 @@ static void null_pointers(const UpglowCube *cube, const UpglowMaterial *material
     REFUSED(upglow_look_up(cube, NULL, &room), null);
     REFUSED(upglow_look_up(cube, rgb, NULL), null);
     HOLDS(strcmp(upglow_message(), "material is null, expected a pointer") == 0);
+    REFUSED(upglow_look_up_many(NULL, rgb, &room, 1, NULL), null);
+    REFUSED(upglow_look_up_many(cube, NULL, &room, 1, NULL), null);
+    REFUSED(upglow_look_up_many(cube, rgb, NULL, 1, NULL), null);
     REFUSED(upglow_is_fluorescent(material, NULL), null);
     REFUSED(upglow_reflectance(NULL, 500, &value), null);
     REFUSED(upglow_reflectance(material, 500, NULL), null);
@@ -208,6 +211,85 @@ static void arrays_of_colors(const UpglowCube *cube) {
     upglow_colors_destroy(colors);
 }
 
+/* Many colors at once: as one by one, and an empty material where there is none. */
+static void many_materials(const UpglowCube *cube) {
+    enum { COUNT = 37 };
+    const UpglowStatus invalid = UPGLOW_STATUS_INVALID_ARGUMENT;
+    float rgb[COUNT][3];
+    for (int i = 0; i < COUNT; i++) {
+        rgb[i][0] = (float)i / COUNT;
+        rgb[i][1] = 0.5f;
+        rgb[i][2] = 1 - rgb[i][0];
+    }
+    rgb[5][1] = NAN;
+    rgb[36][2] = -1;
+    UpglowMaterial *many = malloc(COUNT * sizeof *many), one;
+    memset(many, 0x11, COUNT * sizeof *many);
+    one = many[0];
+    size_t outside = 7;
+    REFUSED(upglow_look_up_many(cube, rgb[0], many, SIZE_MAX / 2, &outside), invalid);
+    REFUSED(upglow_look_up_many(cube, (const float *)many + 3, many, COUNT, &outside), invalid);
+    HOLDS(strcmp(upglow_message(), "materials overlaps rgb, expected memory of its own") == 0);
+    HOLDS(outside == 7 && memcmp(&one, many, sizeof one) == 0);
+    ACCEPTED(upglow_look_up_many(cube, NULL, NULL, 0, &outside));
+    HOLDS(outside == 0);
+    ACCEPTED(upglow_look_up_many(cube, rgb[0], many, COUNT, NULL));
+    ACCEPTED(upglow_look_up_many(cube, rgb[0], many, COUNT, &outside));
+    HOLDS(outside == 2);
+    for (int i = 0; i < COUNT; i++) {
+        float together = 7, alone = 8;
+        if (i == 5 || i == 36) {
+            REFUSED(upglow_reflectance(&many[i], 550, &together), invalid);
+            continue;
+        }
+        ACCEPTED(upglow_look_up(cube, rgb[i], &one));
+        ACCEPTED(upglow_reflectance(&one, 550, &alone));
+        ACCEPTED(upglow_reflectance(&many[i], 550, &together));
+        HOLDS(together == alone);
+    }
+    free(many);
+}
+
+/* Lights that were measured: which are none, and that white is white under each. */
+static void sampled_lights(const UpglowCube *cube) {
+    enum { COUNT = 54 };
+    const UpglowStatus invalid = UPGLOW_STATUS_INVALID_ARGUMENT, null = UPGLOW_STATUS_NULL_POINTER;
+    static const float rgb[2][3] = {{1, 1, 1}, {0.05f, 0.9f, 0.1f}};
+    float nm[COUNT], flat[COUNT], odd[COUNT], flat_xyz[2][3], e_xyz[2][3];
+    for (int i = 0; i < COUNT; i++) {
+        nm[i] = 300.0f + 10.0f * (float)i;
+        flat[i] = odd[i] = 5.0f;
+    }
+    UpglowColors *colors = NULL;
+    REFUSED(upglow_colors_create_sampled(NULL, nm, flat, COUNT, &colors), null);
+    REFUSED(upglow_colors_create_sampled(cube, NULL, flat, COUNT, &colors), null);
+    REFUSED(upglow_colors_create_sampled(cube, nm, NULL, COUNT, &colors), null);
+    REFUSED(upglow_colors_create_sampled(cube, nm, flat, COUNT, NULL), null);
+    REFUSED(upglow_colors_create_sampled(cube, nm, flat, 0, &colors), invalid);
+    REFUSED(upglow_colors_create_sampled(cube, nm, flat, COUNT - 1, &colors), invalid);
+    REFUSED(upglow_colors_create_sampled(cube, flat, flat, COUNT, &colors), invalid);
+    odd[7] = -0.5f;
+    REFUSED(upglow_colors_create_sampled(cube, nm, odd, COUNT, &colors), invalid);
+    HOLDS(strcmp(upglow_message(),
+                 "sample 7: -0.5 in column \"power\", expected a value of 0 or more") == 0);
+    odd[7] = NAN;
+    REFUSED(upglow_colors_create_sampled(cube, nm, odd, COUNT, &colors), invalid);
+    memset(odd, 0, sizeof odd);
+    REFUSED(upglow_colors_create_sampled(cube, nm, odd, COUNT, &colors), invalid);
+    HOLDS(colors == NULL);
+
+    ACCEPTED(upglow_colors_create_sampled(cube, nm, flat, COUNT, &colors));
+    ACCEPTED(upglow_xyz(colors, rgb[0], flat_xyz[0], 2, NULL));
+    upglow_colors_destroy(colors);
+    ACCEPTED(upglow_colors_create(cube, "E", &colors));
+    ACCEPTED(upglow_xyz(colors, rgb[0], e_xyz[0], 2, NULL));
+    upglow_colors_destroy(colors);
+    for (int i = 0; i < 6; i++) {
+        HOLDS(fabsf(flat_xyz[i / 3][i % 3] - e_xyz[i / 3][i % 3]) < 1e-6f);
+    }
+    HOLDS(fabsf(flat_xyz[0][1] - 1.0f) < 1e-5f);
+}
+
 /* Threads that share a cube and a material, each with a failure of its own. */
 #define THREADS 8
 #define ROUNDS 400
@@ -280,6 +362,8 @@ int main(int count, char **arguments) {
     odd_numbers(cube, &material);
     odd_materials(cube);
     arrays_of_colors(cube);
+    many_materials(cube);
+    sampled_lights(cube);
     threads(cube, &material);
     upglow_cube_destroy(cube);
     printf("failures %d\n", failures);

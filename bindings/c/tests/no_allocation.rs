@@ -73,7 +73,9 @@ fn nothing_is_allocated_after_the_load() {
     let mut sample = MaybeUninit::<UpglowSample>::uninit();
     let (rgb, nm, u) = ([0.2_f32, 0.5, 0.7], [450.0_f32; 8], [0.9_f32, 0.5]);
     let (mut value, mut values, mut xyz) = (0.0, [0.0_f32; 8], [0.0_f32; 3]);
-    let mut statuses = [UpglowStatus::Internal; 8];
+    let colors_of_many = [[0.2_f32, 0.5, 0.7], [0.2, f32::NAN, 0.7]];
+    let mut many = [const { MaybeUninit::<UpglowMaterial>::uninit() }; 2];
+    let mut statuses = [UpglowStatus::Internal; 9];
     let count = allocations(|| {
         let material_mut = material.as_mut_ptr();
         // SAFETY: the pointers are those of live handles and of variables; the first call fills
@@ -81,6 +83,13 @@ fn nothing_is_allocated_after_the_load() {
         statuses = unsafe {
             [
                 upglow_look_up(cube, rgb.as_ptr(), material_mut),
+                upglow_look_up_many(
+                    cube,
+                    colors_of_many.as_ptr().cast(),
+                    many.as_mut_ptr().cast(),
+                    many.len(),
+                    null_mut(),
+                ),
                 upglow_reflectance(material_mut, 500.0, &raw mut value),
                 upglow_reflectance_4(material_mut, nm.as_ptr(), values.as_mut_ptr()),
                 upglow_reflectance_8(material_mut, nm.as_ptr(), values.as_mut_ptr()),
@@ -91,7 +100,7 @@ fn nothing_is_allocated_after_the_load() {
             ]
         };
     });
-    assert_eq!((count, statuses), (0, [UpglowStatus::Ok; 8]));
+    assert_eq!((count, statuses), (0, [UpglowStatus::Ok; 9]));
     // SAFETY: nobody uses them any more.
     unsafe {
         upglow_colors_destroy(colors);

@@ -77,8 +77,8 @@ impl Language {
     }
 }
 
-/// What is missing for any of the steps.
-fn missing(tools: &[&'static str]) -> Option<&'static str> {
+/// What is missing of the compilers and these tools.
+pub(crate) fn missing(tools: &[&'static str]) -> Option<&'static str> {
     if Language::C.compiler().is_none() {
         return Some("no C compiler, neither $CC nor cc");
     }
