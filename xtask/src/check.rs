@@ -8,7 +8,7 @@ use std::process::{Command, ExitCode, Stdio};
 use std::time::Instant;
 
 use crate::python::{self, Python};
-use crate::{c_library, layers, python_wheel, readme, tables};
+use crate::{c_library, layers, mitsuba, python_wheel, readme, tables};
 
 /// Set for the tests under `--slow`, so that they may take larger samples.
 const SLOW_VARIABLE: &str = "UPGLOW_SLOW";
@@ -96,7 +96,7 @@ const SLOW_STEP: (&str, Step) = ("slow tests", slow_tests);
 /// Runs the steps up to the first failure; prints a line for each and a summary.
 pub(crate) fn run(root: &Path, tests: Tests) -> ExitCode {
     let slow = (tests == Tests::QuickAndSlow).then_some(SLOW_STEP);
-    let bindings = c_library::STEPS.into_iter().chain(python_wheel::STEPS);
+    let bindings = c_library::STEPS.into_iter().chain(python_wheel::STEPS).chain(mitsuba::STEPS);
     run_steps(root, STEPS.into_iter().chain(bindings).chain(slow))
 }
 

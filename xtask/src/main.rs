@@ -10,6 +10,8 @@ mod bench;
 mod c_library;
 mod check;
 mod layers;
+mod llvm;
+mod mitsuba;
 mod python;
 mod python_wheel;
 mod readme;
@@ -23,7 +25,8 @@ usage: cargo xtask tables          write crates/upglow-color/src/tables from tab
        cargo xtask install-c DIR   install the C library, its header, and files for pkg-config
                                    and CMake below DIR
        cargo xtask test-c          run the checks of the C library
-       cargo xtask test-python     build the Python package's wheel and run its tests";
+       cargo xtask test-python     build the Python package's wheel and run its tests
+       cargo xtask test-mitsuba    build the plugins for Mitsuba 3 and run their tests";
 
 /// Exit status on bad usage; 1 is a check that failed.
 const BAD_USAGE: u8 = 2;
@@ -38,6 +41,7 @@ fn main() -> ExitCode {
         ["install-c", prefix] => install_c(root, Path::new(prefix)),
         ["test-c"] => check::run_steps(root, c_library::STEPS),
         ["test-python"] => check::run_steps(root, python_wheel::STEPS),
+        ["test-mitsuba"] => check::run_steps(root, mitsuba::STEPS_WITH_PACKAGE),
         ["check"] => check::run(root, check::Tests::Quick),
         ["check", "--slow"] => check::run(root, check::Tests::QuickAndSlow),
         _ => {

@@ -15,6 +15,9 @@ const REQUIREMENTS: [&str; 3] = [
     "crates/upglow-shader/tests/drivers/requirements.txt",
 ];
 
+/// The list of what the plugins for Mitsuba need, on top of the others: not every platform has it.
+const MITSUBA_REQUIREMENTS: &str = "bindings/mitsuba/requirements.txt";
+
 /// Whether tests have their Python.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Python {
@@ -36,16 +39,40 @@ pub(crate) fn prepare(root: &Path) -> io::Result<Python> {
     if !succeeds(Command::new("python3").args(["-m", "venv", "--clear"]).arg(&folder)) {
         return Ok(Python::Missing("no python3 with venv"));
     }
-    let mut install = Command::new(&interpreter);
-    install.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"]);
-    for list in REQUIREMENTS {
-        install.arg("--requirement").arg(root.join(list));
-    }
-    if !succeeds(&mut install) {
+    let lists = REQUIREMENTS.map(|list| root.join(list));
+    if !succeeds(&mut install(&interpreter, &lists)) {
         return Ok(Python::Missing("pip could not install the readers"));
     }
     fs::write(installed, wanted)?;
     Ok(Python::Ready(interpreter))
+}
+
+/// Makes `target/python` hold Mitsuba as well.
+pub(crate) fn prepare_with_mitsuba(root: &Path) -> io::Result<Python> {
+    let interpreter = match prepare(root)? {
+        Python::Ready(interpreter) => interpreter,
+        missing => return Ok(missing),
+    };
+    let list = root.join(MITSUBA_REQUIREMENTS);
+    let wanted = fs::read_to_string(&list)?;
+    let installed = root.join("target").join("python").join("installed-mitsuba.txt");
+    if fs::read_to_string(&installed).is_ok_and(|found| found == wanted) {
+        return Ok(Python::Ready(interpreter));
+    }
+    if !succeeds(&mut install(&interpreter, &[list])) {
+        return Ok(Python::Missing("pip could not install Mitsuba"));
+    }
+    fs::write(installed, wanted)?;
+    Ok(Python::Ready(interpreter))
+}
+
+fn install(interpreter: &Path, lists: &[PathBuf]) -> Command {
+    let mut install = Command::new(interpreter);
+    install.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"]);
+    for list in lists {
+        install.arg("--requirement").arg(list);
+    }
+    install
 }
 
 /// All lists, one after the other.
@@ -65,7 +92,8 @@ mod tests {
     #[test]
     fn every_list_is_there_and_pins_its_packages() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
-        let lists = requirements(root).unwrap();
+        let mitsuba = fs::read_to_string(root.join(MITSUBA_REQUIREMENTS)).unwrap();
+        let lists = requirements(root).unwrap() + &mitsuba;
         let packages = lists.lines().filter(|line| !line.is_empty() && !line.starts_with('#'));
         for package in packages {
             assert!(package.contains("=="), "{package}");

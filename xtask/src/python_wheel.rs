@@ -4,6 +4,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 use crate::check::{Outcome, Step, StepError, output_of, release_bin_dir};
+use crate::llvm;
 use crate::python::{self, Python};
 
 /// Where the package lies.
@@ -16,12 +17,26 @@ const PROGRAM_VARIABLE: &str = "UPGLOW_PROGRAM";
 pub(crate) const STEPS: [(&str, Step); 1] = [("Python package", run)];
 
 fn run(root: &Path) -> Result<Outcome, StepError> {
-    let path = root.join("target/python");
-    match python::prepare(root).map_err(|source| StepError::File { path, source })? {
-        Python::Ready(interpreter) => {
-            println!("{}", test(root, &interpreter)?);
-            Ok(Outcome::Passed)
-        }
+    with_python(root, |interpreter| {
+        println!("{}", test(root, interpreter)?);
+        Ok(Outcome::Passed)
+    })
+}
+
+/// Builds and installs the wheel, for what else needs it.
+pub(crate) fn installs(root: &Path) -> Result<Outcome, StepError> {
+    with_python(root, |interpreter| output_of(install(root, interpreter)).map(|_| Outcome::Passed))
+}
+
+/// Tests of Mitsuba skip themselves, by name, where it could not be installed.
+fn with_python(
+    root: &Path,
+    work: impl FnOnce(&Path) -> Result<Outcome, StepError>,
+) -> Result<Outcome, StepError> {
+    let file = |source| StepError::File { path: root.join("target/python"), source };
+    python::prepare_with_mitsuba(root).map_err(file)?;
+    match python::prepare(root).map_err(file)? {
+        Python::Ready(interpreter) => work(&interpreter),
         Python::Missing(reason) => Ok(Outcome::Skipped(reason)),
     }
 }
@@ -32,36 +47,43 @@ fn run(root: &Path) -> Result<Outcome, StepError> {
 pub(crate) fn test(root: &Path, interpreter: &Path) -> Result<String, StepError> {
     let programs = release_bin_dir(root)?;
     output_of(install(root, interpreter))?;
-    let mut tests = python(root, interpreter);
-    tests.args(["-m", "pytest", "-q", "-p", "no:cacheprovider"]);
+    let tests = pytest(&root.join(PACKAGE), interpreter, &programs);
+    output_of(tests).map(|told| summary(&told).to_owned())
+}
+
+/// pytest in a folder, with the program `upglow` and a libLLVM for the tests that want them.
+pub(crate) fn pytest(folder: &Path, interpreter: &Path, programs: &Path) -> Command {
+    let mut tests = python(folder, interpreter);
+    tests.args(["-m", "pytest", "-q", "-rs", "-p", "no:cacheprovider"]);
     let program = format!("upglow{}", std::env::consts::EXE_SUFFIX);
     tests.env(PROGRAM_VARIABLE, programs.join(program));
-    output_of(tests).map(|told| summary(&told).to_owned())
+    llvm::name_for(&mut tests);
+    tests
 }
 
 /// What users type, but offline and with the build tools that are there.
 fn install(root: &Path, interpreter: &Path) -> Command {
-    let mut command = python(root, interpreter);
+    let mut command = python(&root.join(PACKAGE), interpreter);
     command.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-index"]);
     command.args(["--no-deps", "--no-build-isolation", "--force-reinstall"]);
     command.arg(root.join(PACKAGE)).env("CARGO_NET_OFFLINE", "true");
     command
 }
 
-/// Python in the package's folder, with the commands of its environment. It leaves no files there.
-fn python(root: &Path, interpreter: &Path) -> Command {
+/// Python in a folder, with the commands of its environment. It leaves no files there.
+fn python(folder: &Path, interpreter: &Path) -> Command {
     let mut paths: Vec<_> = interpreter.parent().map(Path::to_owned).into_iter().collect();
     let inherited = std::env::var_os("PATH").unwrap_or_default();
     paths.extend(std::env::split_paths(&inherited));
     let path = std::env::join_paths(paths).unwrap_or(inherited);
     let mut command = Command::new(interpreter);
-    command.current_dir(root.join(PACKAGE)).stdin(Stdio::null());
+    command.current_dir(folder).stdin(Stdio::null());
     command.env("PATH", path).env("PYTHONDONTWRITEBYTECODE", "1");
     command
 }
 
 /// pytest's last lines: those about skipped tests, where there are any, and the counts.
-fn summary(told: &str) -> &str {
+pub(crate) fn summary(told: &str) -> &str {
     let told = told.trim_end();
     let start = told.find("== short test summary").or_else(|| told.rfind('\n'));
     let start = start.and_then(|at| told[at..].find('\n').map(|end| at + end + 1));
