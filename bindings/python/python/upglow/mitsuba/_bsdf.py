@@ -1,0 +1,107 @@
+"""The BSDF `upglow`: a diffuse surface of a cube's material."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ._color import Color
+from ._cube_source import cube_named, on_device
+from ._host import dr, mi, what_is_missing
+from ._lamps import Lamps
+from ._wrappers import Fluorescence
+
+
+def bsdf_class() -> Any:
+    """The class for the variant that is set: its base is another in each."""
+
+    class UpglowBSDF(mi.BSDF):  # type: ignore[misc]
+        """A diffuse reflector whose reflectance is looked up in a cube.
+
+        The renderer's interface for surfaces knows one wavelength on both sides of a reflection.
+        Here that part is answered; `fluorescence` has the rest for integrators that ask.
+        """
+
+        def __init__(self, props: Any) -> None:
+            if missing := what_is_missing():
+                raise ValueError(missing)
+            mi.BSDF.__init__(self, props)
+            if "cube" not in props:
+                raise ValueError("no cube, expected the path of a cube's file")
+            self._source = props["cube"]
+            self._cube = on_device(cube_named(self._source))
+            self._color = Color(props)
+            flags = mi.BSDFFlags.DiffuseReflection | mi.BSDFFlags.FrontSide
+            if self._color.texture is not None:
+                flags = flags | mi.BSDFFlags.SpatiallyVarying
+            self.m_components, self.m_flags = [flags], flags
+
+        @property
+        def is_fluorescent(self) -> bool:
+            """Whether the cube has fluorescent materials."""
+            return self._cube.is_fluorescent
+
+        def fluorescence(self, lamps: Lamps | None) -> Fluorescence:
+            """Draws of fluorescence for this surface in a scene with such lamps.
+
+            The function takes a surface interaction, two numbers in 0 to 1, and a mask. It returns
+            throughputs and wavelengths (nm) of light that comes in, for those of the interaction,
+            which leave. A throughput is that of the whole hemisphere, as a reflectance is; 0 at the
+            back.
+            """
+            draw = self._cube.fluorescence(lamps)
+
+            def drawn(si: Any, u: Any, active: Any) -> tuple[Any, Any]:
+                color = self._color.at(si, active)
+                throughput, nm = draw(color, si.wavelengths, u.x, u.y, active)
+                is_front = mi.Frame3f.cos_theta(si.wi) > 0
+                return dr.select(is_front, throughput, 0), dr.select(is_front, nm, si.wavelengths)
+
+            return drawn
+
+        def sample(
+            self, ctx: Any, si: Any, sample1: Any, sample2: Any, active: Any = True
+        ) -> tuple[Any, Any]:
+            cos_i = mi.Frame3f.cos_theta(si.wi)
+            drawn = dr.zeros(mi.BSDFSample3f)
+            active = active & (cos_i > 0) & self._is_asked(ctx)
+            drawn.wo = mi.warp.square_to_cosine_hemisphere(sample2)
+            drawn.pdf = dr.select(active, mi.warp.square_to_cosine_hemisphere_pdf(drawn.wo), 0)
+            drawn.eta = 1
+            drawn.sampled_type = mi.UInt32(+mi.BSDFFlags.DiffuseReflection)
+            drawn.sampled_component = 0
+            weight = self._reflectance(si, active)
+            return drawn, dr.select(active & (drawn.pdf > 0), weight, 0)
+
+        def eval(self, ctx: Any, si: Any, wo: Any, active: Any = True) -> Any:
+            active = active & self._is_asked(ctx) & _are_in_front(si, wo)
+            value = self._reflectance(si, active) * (mi.Frame3f.cos_theta(wo) / dr.pi)
+            return dr.select(active, value, 0)
+
+        def pdf(self, ctx: Any, si: Any, wo: Any, active: Any = True) -> Any:
+            active = active & self._is_asked(ctx) & _are_in_front(si, wo)
+            return dr.select(active, mi.warp.square_to_cosine_hemisphere_pdf(wo), 0)
+
+        def eval_pdf(self, ctx: Any, si: Any, wo: Any, active: Any = True) -> tuple[Any, Any]:
+            return self.eval(ctx, si, wo, active), self.pdf(ctx, si, wo, active)
+
+        def eval_diffuse_reflectance(self, si: Any, active: Any = True) -> Any:
+            return self._reflectance(si, active)
+
+        def traverse(self, callback: Any) -> None:
+            self._color.traverse(callback)
+
+        def to_string(self) -> str:
+            color = str(self._color).replace("\n", "\n  ")
+            return f"UpglowBSDF[\n  cube = {self._source!r},\n  color = {color}\n]"
+
+        def _reflectance(self, si: Any, active: Any) -> Any:
+            return self._cube.reflectance(self._color.at(si, active), si.wavelengths, active)
+
+        def _is_asked(self, ctx: Any) -> bool:
+            return bool(ctx.is_enabled(mi.BSDFFlags.DiffuseReflection))
+
+    return UpglowBSDF
+
+
+def _are_in_front(si: Any, wo: Any) -> Any:
+    return (mi.Frame3f.cos_theta(si.wi) > 0) & (mi.Frame3f.cos_theta(wo) > 0)

@@ -1,0 +1,309 @@
+"""The integrator `upglow_path`: path tracing in which wavelengths may change.
+
+A path from the camera carries four wavelengths, as the renderer's own do. Where it meets a fluorescent
+surface, each of them goes on as it was, or as a shorter one whose light the surface turns into it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import Any
+
+from ._host import dr, is_scalar, mi, ratio, what_is_missing
+from ._wrappers import Fluorescence, fluorescent_surfaces, no_fluorescence
+
+_ENDLESS = 2**31 - 1
+"""The depth of paths that only chance ends."""
+
+_MOST_LIKELY = 0.95
+"""Russian roulette ends at least one path in twenty, as in the renderer's own integrators."""
+
+_Known = list[tuple[Any, Fluorescence]]
+"""The fluorescent surfaces of a scene, each with its draws."""
+
+
+def integrator_class() -> Any:
+    """The class for the variant that is set: its base is another in each."""
+
+    class UpglowPath(mi.SamplingIntegrator):  # type: ignore[misc]
+        """Unidirectional path tracing with emitter sampling, for fluorescent surfaces."""
+
+        def __init__(self, props: Any) -> None:
+            if missing := what_is_missing():
+                raise ValueError(missing)
+            mi.SamplingIntegrator.__init__(self, props)
+            self._max_depth = _depth(props, "max_depth", -1, 0)
+            self._rr_depth = _depth(props, "rr_depth", 5, 1)
+            self._hides = props.get("hide_emitters", False)
+            self._seen: tuple[Any, _Known] | None = None
+
+        def sample(
+            self, scene: Any, sampler: Any, ray: Any, medium: Any = None, active: Any = True
+        ) -> tuple[Any, Any, list[Any]]:
+            if self._max_depth == 0:
+                return mi.Spectrum(0), mi.Bool(False), []
+            walk = _Walk(self, scene, sampler)
+            state = walk.start(ray, active)
+            if is_scalar():
+                while state.active:
+                    state = walk.step(state)
+            else:
+                state = _loop(walk, state, self._max_depth)
+            return state.radiance, state.is_valid, []
+
+        def to_string(self) -> str:
+            return (
+                f"UpglowPath[\n  max_depth = {self._max_depth},\n  rr_depth = {self._rr_depth},\n"
+                f"  hide_emitters = {self._hides}\n]"
+            )
+
+        def _known(self, scene: Any) -> _Known:
+            """The fluorescent surfaces of a scene.
+
+            The scene itself is not kept: it holds the integrator, and both would stay for ever.
+            """
+            if not is_scalar():
+                return fluorescent_surfaces(scene)
+            # Here each ray asks.
+            parts = scene.shapes(), scene.emitters()
+            if self._seen is None or self._seen[0] != parts:
+                self._seen = parts, fluorescent_surfaces(scene)
+            return self._seen[1]
+
+    return UpglowPath
+
+
+def _depth(props: Any, name: str, default: int, least: int) -> int:
+    depth = int(props.get(name, default))
+    if depth < least and not (name == "max_depth" and depth == -1):
+        also = " or -1 for no limit" if name == "max_depth" else ""
+        raise ValueError(f"{name} is {depth}, expected {least} or more{also}")
+    return _ENDLESS if depth < 0 else depth
+
+
+def _loop(walk: _Walk, state: _State, max_depth: int) -> _State:
+    names = [field.name for field in fields(state)]
+
+    def body(*values: Any) -> tuple[Any, ...]:
+        after = walk.step(_State(*values[:-1]))
+        return (*(getattr(after, name) for name in names), values[-1])
+
+    values = (*(getattr(state, name) for name in names), walk.sampler)
+    limit = max_depth if max_depth < _ENDLESS else None
+    is_going = names.index("active")
+    done = dr.while_loop(
+        values, lambda *v: v[is_going], body, label="upglow_path", max_iterations=limit
+    )
+    return _State(*done[:-1])
+
+
+@dataclass
+class _State:
+    """A path on its way."""
+
+    ray: Any
+    """Where it goes next, with its wavelengths there."""
+    radiance: Any
+    """What was gathered, for each wavelength of the camera."""
+    throughput: Any
+    """What light from ahead is worth."""
+    eta: Any
+    """Product of the indices of refraction passed."""
+    depth: Any
+    """Surfaces met."""
+    si: Any
+    """The last of them."""
+    pdf: Any
+    """Density (1/sr) of the direction drawn there."""
+    is_delta: Any
+    """Whether that direction had no density."""
+    is_valid: Any
+    """Whether the camera sees anything."""
+    active: Any
+    """Whether it goes on."""
+
+
+class _Walk:
+    """How paths go through one scene."""
+
+    def __init__(self, integrator: Any, scene: Any, sampler: Any) -> None:
+        self.scene, self.sampler = scene, sampler
+        self.known: _Known = integrator._known(scene)
+        self.max_depth, self.rr_depth = integrator._max_depth, integrator._rr_depth
+        self.hides = integrator._hides
+        self.context = mi.BSDFContext()
+
+    def start(self, ray: Any, active: Any) -> _State:
+        ray, active = mi.Ray3f(ray), mi.Bool(active)
+        if self.hides:
+            ray = _past_emitters(self.scene, ray, active)
+        shows_background = not self.hides and self.scene.environment() is not None
+        return _State(
+            ray=ray,
+            radiance=mi.Spectrum(0),
+            throughput=mi.Spectrum(1),
+            eta=mi.Float(1),
+            depth=mi.UInt32(0),
+            si=dr.zeros(mi.SurfaceInteraction3f),
+            pdf=mi.Float(1),
+            is_delta=mi.Bool(True),
+            is_valid=mi.Bool(shows_background),
+            active=active,
+        )
+
+    def step(self, state: _State) -> _State:
+        """One surface on."""
+        si = self.scene.ray_intersect(
+            state.ray, mi.RayFlags.All, state.depth == 0, active=state.active
+        )
+        radiance = state.radiance + self._emitted(state, si)
+        going = state.active & si.is_valid() & (state.depth + 1 < self.max_depth)
+        if is_scalar() and not going:
+            # Where there is no surface, the renderer's scalar variants cannot be asked for one.
+            return _ended(state, radiance)
+        bsdf = si.bsdf(state.ray)
+        moved, moved_nm = self._fluorescence(bsdf, si, going)
+        lit = self._lit(state, si, bsdf, moved, moved_nm, going)
+        after = self._reflected(state, si, bsdf, moved, moved_nm, going)
+        after.radiance = radiance + lit
+        return after
+
+    def _emitted(self, state: _State, si: Any) -> Any:
+        """What the surface sends by itself, weighed against having sampled it as a light."""
+        emitter = si.emitter(self.scene, state.active)
+        is_there = state.active & (emitter != None)  # noqa: E711
+        if self.hides:
+            is_there &= state.depth > 0
+        if is_scalar() and not is_there:
+            return mi.Spectrum(0)
+        ds = mi.DirectionSample3f(self.scene, si, state.si)
+        sampled = is_there & (state.is_delta ^ True)
+        light_pdf = self.scene.pdf_emitter_direction(state.si, ds, sampled)
+        weight = _weight(state.pdf, dr.select(sampled, light_pdf, 0))
+        return dr.select(is_there, state.throughput * weight * emitter.eval(si, is_there), 0)
+
+    def _fluorescence(self, bsdf: Any, si: Any, active: Any) -> tuple[Any, Any]:
+        """Throughput and wavelengths of the light that the surface would shift."""
+        if not self.known:
+            return no_fluorescence(si)
+        u = self.sampler.next_2d()
+        if is_scalar():
+            return self._answer(bsdf, si, u, active)
+        moved, nm = dr.dispatch(bsdf, self._answer, si, u, active)
+        return dr.select(active, moved, 0), dr.select(active, nm, si.wavelengths)
+
+    def _answer(self, bsdf: Any, si: Any, u: Any, active: Any) -> tuple[Any, Any]:
+        for surface, answer in self.known:
+            if surface is bsdf:
+                return answer(si, u, active)
+        return no_fluorescence(si)
+
+    def _lit(
+        self, state: _State, si: Any, bsdf: Any, moved: Any, moved_nm: Any, active: Any
+    ) -> Any:
+        """Light straight from an emitter, reflected and shifted: both parts, without a choice."""
+        active = active & mi.has_flag(bsdf.flags(), mi.BSDFFlags.Smooth)
+        ds, light = self.scene.sample_emitter_direction(si, self.sampler.next_2d(), True, active)
+        active = active & (ds.pdf != 0)
+        if is_scalar() and not active:
+            return mi.Spectrum(0)
+        wo = si.to_local(ds.d)
+        value, pdf = bsdf.eval_pdf(self.context, si, wo, active)
+        total = value * light
+        if self.known:
+            there = mi.SurfaceInteraction3f(si)
+            there.wavelengths = moved_nm
+            shifted = self.scene.eval_emitter_direction(there, ds, active) / ds.pdf
+            total += _lobe(si, wo) * moved * dr.select(active, shifted, 0)
+        weight = dr.select(ds.delta, 1, _weight(ds.pdf, pdf))
+        return dr.select(active, state.throughput * weight * total, 0)
+
+    def _reflected(
+        self, state: _State, si: Any, bsdf: Any, moved: Any, moved_nm: Any, active: Any
+    ) -> _State:
+        """The way on: a direction for all wavelengths, and for each whether it is another."""
+        drawn, weight = bsdf.sample(
+            self.context, si, self.sampler.next_1d(), self.sampler.next_2d(), active
+        )
+        is_delta = mi.has_flag(drawn.sampled_type, mi.BSDFFlags.Delta)
+        is_through = mi.has_flag(drawn.sampled_type, mi.BSDFFlags.Null)
+        is_valid = state.is_valid | (active & (is_through ^ True))
+        ray = si.spawn_ray(si.to_world(drawn.wo))
+        if self.known:
+            lobe = dr.select(is_delta, 0, ratio(_lobe(si, drawn.wo), drawn.pdf))
+            choice = self.sampler.next_1d()
+            weight, ray.wavelengths = _chosen(
+                weight, si.wavelengths, lobe * moved, moved_nm, choice
+            )
+        throughput = state.throughput * weight
+        eta = state.eta * drawn.eta
+        most = dr.max(throughput)
+        active = active & (most != 0)
+        chance = dr.minimum(dr.detach(most * dr.square(eta)), _MOST_LIKELY)
+        is_risked = state.depth + 1 >= self.rr_depth
+        is_kept = (is_risked ^ True) | (self.sampler.next_1d() < chance)
+        active = active & is_kept
+        risk = dr.select(is_risked & active, ratio(1, chance), 1)
+        return _State(
+            ray=ray,
+            radiance=state.radiance,
+            throughput=throughput * risk,
+            eta=eta,
+            depth=dr.select(si.is_valid(), state.depth + 1, state.depth),
+            si=dr.detach(si),
+            pdf=dr.detach(drawn.pdf),
+            is_delta=is_delta,
+            is_valid=is_valid,
+            active=active,
+        )
+
+
+def _ended(state: _State, radiance: Any) -> _State:
+    state.radiance, state.active = radiance, False
+    return state
+
+
+def _past_emitters(scene: Any, ray: Any, active: Any) -> Any:
+    """A ray from the camera that begins behind the lights that it is not to see."""
+
+    def on(ray: Any, active: Any) -> tuple[Any, Any]:
+        si = scene.ray_intersect(ray, mi.RayFlags.Minimal, True, active=active)
+        if is_scalar() and not si.is_valid():
+            return ray, False
+        active = active & si.is_valid() & si.shape.is_emitter()
+        return dr.select(active, si.spawn_ray(ray.d), ray), active
+
+    if not is_scalar():
+        return dr.while_loop((ray, active), lambda _, active: active, on, label="hidden")[0]
+    while active:
+        ray, active = on(ray, active)
+    return ray
+
+
+def _lobe(si: Any, wo: Any) -> Any:
+    """The diffuse lobe with its cosine, 1/sr; zero through the surface."""
+    cos_o = mi.Frame3f.cos_theta(wo)
+    return dr.select(mi.Frame3f.cos_theta(si.wi) * cos_o > 0, dr.abs(cos_o) / dr.pi, 0)
+
+
+def _chosen(kept: Any, nm: Any, moved: Any, moved_nm: Any, choice: Any) -> tuple[Any, Any]:
+    """For each wavelength, reflection or fluorescence, as likely as what they carry."""
+    weights, wavelengths = [], []
+    for i in range(len(nm)):
+        total = dr.detach(kept[i] + moved[i])
+        likely = dr.select(total > 0, ratio(dr.detach(kept[i]), total), 1)
+        u = choice + i / len(nm)
+        u = dr.select(u >= 1, u - 1, u)
+        is_kept = (u < likely) | (moved[i] <= 0)
+        carried = dr.select(is_kept, kept[i], moved[i])
+        chance = dr.select(is_kept, likely, 1 - likely)
+        weights.append(ratio(carried, chance))
+        wavelengths.append(dr.select(is_kept, nm[i], moved_nm[i]))
+    return mi.Spectrum(*weights), mi.Spectrum(*wavelengths)
+
+
+def _weight(pdf: Any, other: Any) -> Any:
+    """The power heuristic."""
+    a, b = dr.square(pdf), dr.square(other)
+    weight = dr.detach(ratio(a, a + b))
+    return dr.select(dr.isfinite(weight), weight, 0)

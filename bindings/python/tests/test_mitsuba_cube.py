@@ -1,0 +1,107 @@
+"""Cubes in Dr.Jit against the library: values, and draws of wavelengths."""
+
+from __future__ import annotations
+
+import host
+import numpy as np
+import pytest
+
+import upglow
+
+mi = pytest.importorskip("mitsuba", reason="needs the package mitsuba")
+
+COUNT = 4000
+DRAWS = 200_000
+# Single precision, a sum of four materials: half a dozen roundings of a number up to 1.
+VALUE_TOL = 1e-6
+# The same of densities up to 0.03 per nm.
+DENSITY_TOL = 1e-7
+# Draws in 53 bins: the worst of so many is beyond this once in 10 000.
+WORST_BIN = 4.8
+
+
+@pytest.fixture(autouse=True)
+def variant() -> None:
+    host.renderer()
+
+
+@pytest.fixture
+def jit_cube(any_cube):
+    from upglow.mitsuba._jit_cube import JitCube
+
+    return JitCube(any_cube)
+
+
+def colors(rng: np.random.Generator) -> tuple[np.ndarray, object]:
+    """Random colors, of which some lie on borders between tetrahedra, as arrays of both kinds."""
+    rgb = rng.random((COUNT, 3), dtype=np.float32)
+    rgb[:100] = np.round(rgb[:100] * 8) / 8
+    rgb[100:120] = rgb[100:120, :1]
+    return rgb.astype(np.float64), mi.Color3f(np.ascontiguousarray(rgb.T))
+
+
+def wavelengths(rng: np.random.Generator) -> tuple[np.ndarray, object]:
+    nm = rng.uniform(290, 840, COUNT).astype(np.float32)
+    return nm.astype(np.float64), mi.Float(nm)
+
+
+def test_reflectance_and_albedo_are_the_library_s(any_cube, jit_cube, rng) -> None:
+    (rgb, color), (nm, at) = colors(rng), wavelengths(rng)
+    for name in ("reflectance", "albedo"):
+        ask = getattr(any_cube, name)
+        expected = np.array([ask(one, one_nm) for one, one_nm in zip(rgb, nm, strict=True)])
+        found = np.array(getattr(jit_cube, name)(color, at))
+        assert np.abs(found - expected).max() < VALUE_TOL, name
+
+
+def test_reradiation_is_the_library_s(any_cube, jit_cube, rng) -> None:
+    (rgb, color), (in_nm, start), (out_nm, end) = colors(rng), wavelengths(rng), wavelengths(rng)
+    expected = any_cube.reradiation(rgb, in_nm, out_nm)
+    found = np.array(jit_cube.reradiation(color, start, end)) + np.zeros(COUNT)
+    assert np.abs(found - expected).max() < DENSITY_TOL
+    assert expected.max() > 1e-3 or any_cube.model == "reflectance"
+
+
+def test_a_spectrum_is_answered_as_its_wavelengths_are(jit_cube, rng) -> None:
+    color, nm = mi.Color3f(0.4, 1.0, 0.8), mi.Spectrum(420, 480, 540, 600)
+    for name in ("reflectance", "albedo"):
+        ask = getattr(jit_cube, name)
+        for one, whole in zip(nm, ask(color, nm), strict=True):
+            assert np.array(ask(color, mi.Float(one))) == np.array(whole)
+
+
+@pytest.mark.parametrize("lamp_nm", [None, 450.0])
+def test_draws_are_worth_the_reradiation(any_cube, jit_cube, rng, lamp_nm) -> None:
+    lamps = None if lamp_nm is None else lamps_of(upglow.Illuminant.line(lamp_nm, 20.0))
+    out_nm, bins = 600.0, np.arange(300, 831, 10)
+    u = rng.random((2, DRAWS), dtype=np.float32)
+    known = out_nm + mi.Float(np.zeros(DRAWS, np.float32))
+    color = mi.Color3f(0.9, 0.1, 0.8)
+    drawn = jit_cube.fluorescence(lamps)(color, known, mi.Float(u[0]), mi.Float(u[1]))
+    throughput, nm = (np.array(part, dtype=np.float64) for part in drawn)
+    if any_cube.model == "reflectance":
+        assert not throughput.any() and (nm == out_nm).all()
+        return
+    assert np.isfinite(throughput).all() and throughput.min() >= 0
+    at = np.arange(300, 830.1, 0.25)
+    density = any_cube.reradiation([0.9, 0.1, 0.8], at, out_nm)
+    areas = np.concatenate([[0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(at))])
+    expected = np.diff(np.interp(bins, at, areas))
+    sums = np.histogram(nm, bins, weights=throughput)[0] / DRAWS
+    squares = np.histogram(nm, bins, weights=throughput**2)[0] / DRAWS
+    error = np.sqrt(np.maximum(squares - sums**2, 0) / DRAWS)
+    # Bins that a draw in a thousand reaches: the others say nothing about a deviation.
+    is_told = np.histogram(nm, bins)[0] > DRAWS / 1000
+    assert is_told.sum() >= 3
+    away = np.abs(sums - expected) - VALUE_TOL
+    assert (away < WORST_BIN * error)[is_told].all()
+    assert expected[~is_told].sum() < 0.05 * expected.sum()
+
+
+def lamps_of(light: upglow.Illuminant):
+    """The lamps of a scene with one light."""
+    from upglow.mitsuba import spectrum
+    from upglow.mitsuba._lamps import Lamps
+
+    radiance = spectrum(light)
+    return Lamps(mi.load_dict({"type": "scene", "e": {"type": "constant", "radiance": radiance}}))

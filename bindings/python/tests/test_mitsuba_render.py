@@ -1,0 +1,243 @@
+"""Rendered colors against the library's, and the integrator against the renderer's own."""
+
+from __future__ import annotations
+
+import gc
+import sys
+
+import host
+import numpy as np
+import pytest
+
+import upglow
+
+mi = pytest.importorskip("mitsuba", reason="needs the package mitsuba")
+
+MINT, MAGENTA = [0.4, 1.0, 0.8], [0.9, 0.1, 0.8]
+LAMP = upglow.Illuminant.line(385.0, 12.0)
+# The same sums in another order.
+SAME_TOL = 1e-5
+
+
+@pytest.fixture(autouse=True)
+def variant() -> None:
+    host.renderer()
+
+
+@pytest.fixture(scope="session")
+def gray_cube() -> upglow.Cube:
+    """A cube that does not fluoresce."""
+    return upglow.build(model=upglow.Reflectance(), resolution=9)
+
+
+def surface(cube: upglow.Cube, color) -> dict:
+    return {"type": "upglow", "cube": upglow.mitsuba.in_memory(cube), "color": color}
+
+
+def lights() -> dict[str, dict]:
+    return {
+        "D65": upglow.mitsuba.spectrum("D65"),
+        "lamp": upglow.mitsuba.spectrum(LAMP, 20, by="power"),
+    }
+
+
+def leaving(cube: upglow.Cube, color, light: dict, bounces: int = 1) -> np.ndarray:
+    """Radiance over 1 nm of a wall that sees nothing but such light, or such walls."""
+    matrix = cube.reradiation_matrix(color, upglow.FINE_NM)
+    return np.linalg.matrix_power(matrix, bounces) @ host.light_of(light)
+
+
+@pytest.mark.parametrize("name", ["D65", "lamp"])
+@pytest.mark.parametrize("color", [MINT, MAGENTA], ids=["mint", "magenta"])
+def test_a_lit_plane_has_the_color_of_the_library(cube, name, color) -> None:
+    light = lights()[name]
+    expected = host.xyz_of(leaving(cube, color, light))
+    host.assert_mean(host.picture(host.plane(surface(cube, color), light)), expected)
+    if name == "D65":
+        # The renderer's observer is a table over 5 nm.
+        assert np.abs(expected - cube.xyz(color, step_nm=1)).max() < 2e-3
+
+
+def test_a_cube_without_fluorescence_shows_its_reflectance(gray_cube) -> None:
+    light = lights()["D65"]
+    expected = host.xyz_of(leaving(gray_cube, MINT, light))
+    host.assert_mean(host.picture(host.plane(surface(gray_cube, MINT), light)), expected)
+
+
+def test_the_renderer_s_own_integrator_shows_the_elastic_part(cube) -> None:
+    light = lights()["D65"]
+    elastic = cube.reflectance(MINT, upglow.FINE_NM) * host.light_of(light)
+    pixels = host.picture(host.plane(surface(cube, MINT), light, type="path"))
+    host.assert_mean(pixels, host.xyz_of(elastic))
+    assert leaving(cube, MINT, light).sum() > 1.1 * elastic.sum()
+
+
+@pytest.mark.parametrize("name", ["D65", "lamp"])
+def test_a_closed_furnace_has_the_series_of_its_bounces(cube, name) -> None:
+    light = lights()[name]
+    depth = 4
+    scene = {
+        "type": "scene",
+        "integrator": {"type": "upglow_path", "max_depth": depth, "rr_depth": 2},
+        "sensor": host.sensor([0, 0, 0.5]),
+        "wall": {
+            "type": "sphere",
+            "flip_normals": True,
+            "bsdf": surface(cube, MINT),
+            "emitter": {"type": "area", "radiance": light},
+        },
+    }
+    total = sum(leaving(cube, MINT, light, bounces) for bounces in range(depth))
+    host.assert_mean(host.picture(scene, spp=512), host.xyz_of(total))
+
+
+def wrapped(cube: upglow.Cube, kind: str) -> tuple[dict, float]:
+    """A surface inside another, and what share of it shows before black."""
+    inner, black = surface(cube, MINT), {"type": "diffuse", "reflectance": 0.0}
+    both = {"front": inner, "back": {**inner}}
+    return {
+        "twosided": ({"type": "twosided", "bsdf": inner}, 1.0),
+        "twosided back": ({"type": "twosided", "front": black, "back": inner}, 1.0),
+        "blendbsdf": ({"type": "blendbsdf", "weight": 0.25, "a": inner, "b": black}, 0.75),
+        "mask": ({"type": "mask", "opacity": 0.5, "bsdf": inner}, 0.5),
+        "twosided blend": (
+            {"type": "twosided", "x": {"type": "blendbsdf", "weight": 0.5, **both}},
+            1,
+        ),
+    }[kind]
+
+
+@pytest.mark.parametrize(
+    "kind", ["twosided", "twosided back", "blendbsdf", "mask", "twosided blend"]
+)
+def test_fluorescence_reaches_through_the_renderer_s_wrappers(cube, kind) -> None:
+    light = lights()["D65"]
+    bsdf, share = wrapped(cube, kind)
+    scene = host.plane(bsdf, light, max_depth=3)
+    if kind == "twosided back":
+        scene["plane"]["flip_normals"] = True
+    behind = host.light_of(light) * 0.5 if kind == "mask" else 0
+    expected = host.xyz_of(share * leaving(cube, MINT, light) + behind)
+    host.assert_mean(host.picture(scene), expected)
+
+
+def test_lights_without_size_excite_as_others_do(cube) -> None:
+    light = lights()["lamp"]
+    scene = host.plane(surface(cube, MINT), light)
+    scene["light"] = {"type": "directional", "irradiance": light, "direction": [0, 0, -1]}
+    expected = host.xyz_of(leaving(cube, MINT, light)) / np.pi
+    host.assert_mean(host.picture(scene), expected)
+
+
+def box(**replaced) -> dict:
+    scene = mi.cornell_box()
+    scene["sensor"]["film"] |= {"width": 32, "height": 32, "pixel_format": "rgba"}
+    scene["ball"] = {
+        "type": "sphere",
+        "radius": 0.3,
+        "center": [0, 0.4, 0.4],
+        "bsdf": {"type": "dielectric"},
+    }
+    return scene | replaced
+
+
+@pytest.mark.parametrize("hides", [False, True])
+def test_without_fluorescence_it_is_path_sample_by_sample(hides) -> None:
+    found = []
+    for name in ("path", "upglow_path"):
+        integrator = {"type": name, "max_depth": 5, "rr_depth": 3, "hide_emitters": hides}
+        scene = mi.load_dict(box(integrator=integrator))
+        found.append(np.array(mi.render(scene, spp=4, seed=3)))
+    assert np.abs(found[0] - found[1]).max() < SAME_TOL
+    assert found[0][..., :3].std() > 0.01
+
+
+def test_nothing_of_a_scene_is_kept(cube) -> None:
+    from upglow.mitsuba._wrappers import fluorescent_surfaces
+
+    emitter = {"type": "area", "radiance": lights()["D65"]}
+    scene = host.plane(surface(cube, MINT), lights()["D65"])
+    scene["light"] = {"type": "sphere", "emitter": emitter}
+    loaded = mi.load_dict(scene)
+    parts = [*loaded.shapes(), *loaded.emitters()]
+    counts = [sys.getrefcount(part) for part in parts]
+    # What only the collector frees is freed late: a light that outlives its shape crashes the next
+    # rendering.
+    gc.disable()
+    try:
+        assert len(fluorescent_surfaces(loaded)) == 1
+        assert [sys.getrefcount(part) for part in parts] == counts
+    finally:
+        gc.enable()
+
+
+def test_the_same_seed_gives_the_same_bytes(cube) -> None:
+    scene = mi.load_dict(host.plane(surface(cube, MINT), lights()["D65"], max_depth=3))
+    first, again, other = (host.picture(scene, spp=8, seed=seed) for seed in (1, 1, 2))
+    assert first.tobytes() == again.tobytes() != other.tobytes()
+
+
+def test_a_texture_of_one_color_is_that_color(cube) -> None:
+    light = lights()["D65"]
+    bitmap = mi.Bitmap(np.full((4, 4, 3), MINT, np.float32))
+    texture = {"type": "bitmap", "bitmap": bitmap, "raw": True}
+    found = [
+        host.picture(host.plane(surface(cube, color), light), spp=16) for color in (MINT, texture)
+    ]
+    assert np.allclose(*found, rtol=1e-4, atol=SAME_TOL)
+
+
+def test_textures_are_filtered_first_and_clamped_to_the_cube(cube) -> None:
+    light = lights()["D65"]
+    texels = np.array([[[0.2, 1.2, 0.6], [0.6, 0.8, 1.0]]], np.float32)
+    texture = {"type": "bitmap", "bitmap": mi.Bitmap(texels), "raw": True, "wrap_mode": "clamp"}
+    scene = host.plane(surface(cube, texture), light)
+    # Seen from so near that all is halfway between the texels.
+    scene["sensor"] = host.sensor([0, 0, 0.02])
+    expected = host.xyz_of(leaving(cube, [0.4, 1.0, 0.8], light))
+    host.assert_mean(host.picture(scene), expected)
+
+
+def test_a_color_can_be_edited(cube) -> None:
+    light = lights()["D65"]
+    scene = mi.load_dict(host.plane(surface(cube, MAGENTA), light))
+    params = mi.traverse(scene)
+    params["plane.bsdf.color"] = mi.Color3f(*MINT)
+    params.update()
+    host.assert_mean(host.picture(scene), host.xyz_of(leaving(cube, MINT, light)))
+
+
+def test_gradients_are_those_of_the_library(cube) -> None:
+    import drjit as dr
+
+    light, color, step = lights()["D65"], [0.45, 0.9, 0.8], 1e-3
+    scene = mi.load_dict(host.plane(surface(cube, color), light))
+    params = mi.traverse(scene)
+    params["plane.bsdf.color"] = mi.Color3f(*color)
+    tint = params["plane.bsdf.color"]
+    dr.enable_grad(tint)
+    params.update()
+    image = mi.render(scene, params, spp=64)
+    dr.backward(dr.mean(image[..., 1]))
+    found = np.array(dr.grad(tint)).ravel()
+    expected = []
+    for axis in range(3):
+        ends = []
+        for sign in (-1, 1):
+            moved = np.array(color)
+            moved[axis] += sign * step
+            ends.append(host.xyz_of(leaving(cube, moved, light))[1])
+        expected.append((ends[1] - ends[0]) / (2 * step))
+    assert np.allclose(found, expected, atol=0.02 * np.abs(expected).max()), (found, expected)
+
+
+def test_one_ray_at_a_time_agrees_with_many(cube) -> None:
+    expected = host.xyz_of(leaving(cube, MINT, lights()["D65"]))
+    host.renderer(host.SCALAR)
+    scene = host.plane(surface(cube, MINT), lights()["D65"])
+    scene["sensor"] = host.sensor([0, 0, 2], size=8)
+    host.assert_mean(host.picture(scene, spp=64), expected)
+    # Dividing by zero is an error for one ray, and for many it is not.
+    scene = box(integrator={"type": "upglow_path", "rr_depth": 2}, white=surface(cube, MINT))
+    pixels = np.array(mi.render(mi.load_dict(scene), spp=1))
+    assert np.isfinite(pixels).all() and pixels.std() > 0
