@@ -1,5 +1,6 @@
 //! What was typed, checked and resolved: what is to be done.
 
+use std::fmt::Display;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
@@ -7,7 +8,7 @@ use upglow::{
     AnalyticModel, DyeModel, DyeOptions, DyeSet, DyeSetError, Interpolation, Model, ModelError,
     QuantumYield,
 };
-use upglow_color::{Contract, Illuminant, IlluminantError, LinearRgb, Observer, RgbSpace};
+use upglow_color::{Contract, Illuminant, LinearRgb, Observer, RgbSpace};
 use upglow_fit::{FitOptions, Fitter};
 
 use crate::args::{BuildArgs, ColorArgs, ModelName};
@@ -31,7 +32,7 @@ impl BuildPlan {
         let contract = Contract {
             space: space(&args.space)?,
             illuminant: light("--illuminant", &args.illuminant)?,
-            observer: observer(&args.observer)?,
+            observer: observer("--observer", &args.observer)?,
             adaptation: args.adapt,
         };
         check(&contract)?;
@@ -69,27 +70,31 @@ pub(crate) fn space(text: &str) -> Result<RgbSpace, Failure> {
 
 /// A light by name or file, given with `option`.
 pub(crate) fn light(option: &'static str, text: &str) -> Result<Illuminant, Failure> {
-    let path = Path::new(text);
-    match Illuminant::named(text) {
-        Err(_) if is_path(path) => {
-            let text = files::read_text(path, "a CSV file with the header wavelength_nm,power")?;
-            let name = path.file_stem().map(|stem| stem.to_string_lossy()).unwrap_or_default();
-            Illuminant::from_csv(&name, &text).map_err(|error| Failure::file(path, error))
-        }
-        named => named.map_err(|error: IlluminantError| Failure::option(option, error)),
-    }
+    named_or_read(option, text, "power", Illuminant::named, Illuminant::from_csv)
 }
 
-/// An observer by name or file.
-fn observer(text: &str) -> Result<Observer, Failure> {
+/// An observer by name or file, given with `option`.
+fn observer(option: &'static str, text: &str) -> Result<Observer, Failure> {
+    named_or_read(option, text, "x,y,z", Observer::named, Observer::from_csv)
+}
+
+/// What a built-in name says, else the CSV file at that path, which is called like itself.
+fn named_or_read<T, E: Display>(
+    option: &'static str,
+    text: &str,
+    columns: &str,
+    named: fn(&str) -> Result<T, E>,
+    from_csv: fn(&str, &str) -> Result<T, E>,
+) -> Result<T, Failure> {
     let path = Path::new(text);
-    match Observer::named(text) {
+    match named(text) {
         Err(_) if is_path(path) => {
-            let text = files::read_text(path, "a CSV file with the header wavelength_nm,x,y,z")?;
+            let expected = format!("a CSV file with the header wavelength_nm,{columns}");
+            let text = files::read_text(path, &expected)?;
             let name = path.file_stem().map(|stem| stem.to_string_lossy()).unwrap_or_default();
-            Observer::from_csv(&name, &text).map_err(|error| Failure::file(path, error))
+            from_csv(&name, &text).map_err(|error| Failure::file(path, error))
         }
-        named => named.map_err(|error| Failure::option("--observer", error)),
+        named => named.map_err(|error| Failure::option(option, error)),
     }
 }
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import os
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _upglow
+from ._names_and_files import named_or_read
 from ._wavelengths import samples
 
 
@@ -87,23 +87,8 @@ def _native(source: Any, name: str | None) -> _upglow.Illuminant:
     if isinstance(source, Illuminant):
         return source._native
     if isinstance(source, (str, os.PathLike)):
-        return _from_word(os.fspath(source), name)
+        kind = _upglow.Illuminant
+        return named_or_read(os.fspath(source), name, kind.named, kind.from_csv)
     nm, power = samples("illuminant", source)
     label = name or str(getattr(source, "name", "custom"))
     return _upglow.Illuminant.from_samples(label, nm.tolist(), power.tolist())
-
-
-def _from_word(word: str, name: str | None) -> _upglow.Illuminant:
-    path = Path(word)
-    if word.upper() in _upglow.Illuminant.names() or not is_path(path):
-        return _upglow.Illuminant.named(word)
-    text = path.read_text(encoding="utf-8")
-    try:
-        return _upglow.Illuminant.from_csv(name or path.stem, text)
-    except ValueError as error:
-        raise ValueError(f"{path}: {error}") from None
-
-
-def is_path(path: Path) -> bool:
-    """Whether a word that is no built-in name is meant as a file or folder."""
-    return path.exists() or len(path.parts) > 1 or bool(path.suffix)

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from . import _upglow
-from ._illuminant import is_path
+from ._names_and_files import is_path
 from ._wavelengths import samples
 
 

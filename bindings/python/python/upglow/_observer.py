@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import os
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _upglow
-from ._illuminant import is_path
+from ._names_and_files import named_or_read
 from ._wavelengths import samples
 
 
@@ -82,21 +81,8 @@ def _native(source: Any, name: str | None) -> _upglow.Observer:
     if isinstance(source, Observer):
         return source._native
     if isinstance(source, (str, os.PathLike)):
-        return _from_word(os.fspath(source), name)
+        kind = _upglow.Observer
+        return named_or_read(os.fspath(source), name, kind.named, kind.from_csv)
     nm, matching = samples("observer", source, columns=3)
     label = name or str(getattr(source, "name", "custom"))
     return _upglow.Observer.from_samples(label, nm.tolist(), np.ascontiguousarray(matching))
-
-
-def _from_word(word: str, name: str | None) -> _upglow.Observer:
-    path = Path(word)
-    try:
-        return _upglow.Observer.named(word)
-    except ValueError:
-        if not is_path(path):
-            raise
-    text = path.read_text(encoding="utf-8")
-    try:
-        return _upglow.Observer.from_csv(name or path.stem, text)
-    except ValueError as error:
-        raise ValueError(f"{path}: {error}") from None
