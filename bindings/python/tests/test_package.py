@@ -84,6 +84,19 @@ def test_the_tour_runs(capsys) -> None:
         assert line in told
 
 
+def test_the_benchmark_runs(monkeypatch, capsys) -> None:
+    program = FOLDER / "benches" / "arrays.py"
+    monkeypatch.setattr(sys, "argv", [str(program), "--colors", "1000", "--resolution", "3"])
+    runpy.run_path(str(program), run_name="__main__")
+    told = capsys.readouterr().out.splitlines()
+    assert [line.split("  ")[0] for line in told[1:]] == [
+        "xyz, float32",
+        "xyz, float64",
+        "reflectance, 31 wavelengths",
+        "sample_incident",
+    ]
+
+
 def test_the_readme_names_what_there_is() -> None:
     text = (FOLDER / "README.md").read_text()
     for name in (m for m in vars(upglow.Cube) if not m.startswith("_")):
