@@ -34,7 +34,7 @@ RADIANCE = {"daylight": 14.0, "lamp": 110.0}
 # Factors from luminance to the display, one for each light: its white is 1.
 EXPOSURE = {"daylight": 1.3, "lamp": 0.32}
 # Factors of the samples: glow comes from few of the wavelengths drawn, and is noisier.
-PATIENCE = {"daylight": 1, "lamp": 4}
+PATIENCE = {"daylight": 1, "lamp": 2}
 
 DEPTH, SEED = 9, 1
 FLAT_SIZE, FLAT_SPP = 64, 256

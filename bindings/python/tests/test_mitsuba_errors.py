@@ -103,7 +103,8 @@ def test_fluorescence_that_would_be_lost_is_warned_of(path) -> None:
         "bsdf": {"type": "upglow", "cube": path, "color": [0.4, 1.0, 0.8]},
     }
     scene = mi.load_dict(host.plane(bump, {"type": "uniform", "value": 1.0}))
+    from upglow.mitsuba._lamps import Lamps
     from upglow.mitsuba._wrappers import fluorescent_surfaces
 
     with pytest.warns(UserWarning, match="fluorescence inside BumpMap is lost"):
-        assert fluorescent_surfaces(scene) == []
+        assert fluorescent_surfaces(scene, Lamps(scene)) == []

@@ -10,6 +10,7 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 from ._host import dr, is_scalar, mi, ratio, what_is_missing
+from ._lamps import Lamps
 from ._wrappers import Fluorescence, fluorescent_surfaces, no_fluorescence
 
 _ENDLESS = 2**31 - 1
@@ -18,8 +19,14 @@ _ENDLESS = 2**31 - 1
 _MOST_LIKELY = 0.95
 """Russian roulette ends at least one path in twenty, as in the renderer's own integrators."""
 
-_Known = list[tuple[Any, Fluorescence]]
-"""The fluorescent surfaces of a scene, each with its draws."""
+
+@dataclass(frozen=True)
+class _Known:
+    """What paths are told of a scene."""
+
+    lamps: Lamps
+    surfaces: list[tuple[Any, Fluorescence]]
+    """Those that fluoresce, each with its draws."""
 
 
 def integrator_class() -> Any:
@@ -63,14 +70,19 @@ def integrator_class() -> Any:
             The scene itself is not kept: it holds the integrator, and both would stay for ever.
             """
             if not is_scalar():
-                return fluorescent_surfaces(scene)
+                return _known(scene)
             # Here each ray asks.
             parts = scene.shapes(), scene.emitters()
             if self._seen is None or self._seen[0] != parts:
-                self._seen = parts, fluorescent_surfaces(scene)
+                self._seen = parts, _known(scene)
             return self._seen[1]
 
     return UpglowPath
+
+
+def _known(scene: Any) -> _Known:
+    lamps = Lamps(scene)
+    return _Known(lamps, fluorescent_surfaces(scene, lamps))
 
 
 def _depth(props: Any, name: str, default: int, least: int) -> int:
@@ -128,7 +140,8 @@ class _Walk:
 
     def __init__(self, integrator: Any, scene: Any, sampler: Any) -> None:
         self.scene, self.sampler = scene, sampler
-        self.known: _Known = integrator._known(scene)
+        known: _Known = integrator._known(scene)
+        self.lamps, self.known = known.lamps, known.surfaces
         self.max_depth, self.rr_depth = integrator._max_depth, integrator._rr_depth
         self.hides = integrator._hides
         self.context = mi.BSDFContext()
@@ -232,12 +245,12 @@ class _Walk:
         if self.known:
             lobe = dr.select(is_delta, 0, ratio(_lobe(si, drawn.wo), drawn.pdf))
             choice = self.sampler.next_1d()
-            weight, ray.wavelengths = _chosen(
+            weight, ray.wavelengths = self._chosen(
                 weight, si.wavelengths, lobe * moved, moved_nm, choice
             )
         throughput = state.throughput * weight
         eta = state.eta * drawn.eta
-        most = dr.max(throughput)
+        most = dr.max(self._worth(throughput, ray.wavelengths))
         active = active & (most != 0)
         chance = dr.minimum(dr.detach(most * dr.square(eta)), _MOST_LIKELY)
         is_risked = state.depth + 1 >= self.rr_depth
@@ -256,6 +269,32 @@ class _Walk:
             is_valid=is_valid,
             active=active,
         )
+
+    def _chosen(
+        self, kept: Any, nm: Any, moved: Any, moved_nm: Any, choice: Any
+    ) -> tuple[Any, Any]:
+        """For each wavelength, reflection or fluorescence, as likely as what they are worth."""
+        weights, wavelengths = [], []
+        kept_worth, moved_worth = self._worth(kept, nm), self._worth(moved, moved_nm)
+        for i in range(len(nm)):
+            total = kept_worth[i] + moved_worth[i]
+            likely = dr.select(total > 0, ratio(kept_worth[i], total), 1)
+            u = choice + i / len(nm)
+            u = dr.select(u >= 1, u - 1, u)
+            is_kept = (u < likely) | (moved[i] <= 0)
+            carried = dr.select(is_kept, kept[i], moved[i])
+            chance = dr.select(is_kept, likely, 1 - likely)
+            weights.append(ratio(carried, chance))
+            wavelengths.append(dr.select(is_kept, nm[i], moved_nm[i]))
+        return mi.Spectrum(*weights), mi.Spectrum(*wavelengths)
+
+    def _worth(self, carried: Any, nm: Any) -> Any:
+        """The light to expect of what carries light at some wavelengths, up to a factor."""
+        carried = dr.detach(carried)
+        if not self.known:
+            return carried
+        worth = [self.lamps.worth(dr.detach(each)) for each in nm]
+        return carried * mi.Spectrum(*worth)
 
 
 def _ended(state: _State, radiance: Any) -> _State:
@@ -284,22 +323,6 @@ def _lobe(si: Any, wo: Any) -> Any:
     """The diffuse lobe with its cosine, 1/sr; zero through the surface."""
     cos_o = mi.Frame3f.cos_theta(wo)
     return dr.select(mi.Frame3f.cos_theta(si.wi) * cos_o > 0, dr.abs(cos_o) / dr.pi, 0)
-
-
-def _chosen(kept: Any, nm: Any, moved: Any, moved_nm: Any, choice: Any) -> tuple[Any, Any]:
-    """For each wavelength, reflection or fluorescence, as likely as what they carry."""
-    weights, wavelengths = [], []
-    for i in range(len(nm)):
-        total = dr.detach(kept[i] + moved[i])
-        likely = dr.select(total > 0, ratio(dr.detach(kept[i]), total), 1)
-        u = choice + i / len(nm)
-        u = dr.select(u >= 1, u - 1, u)
-        is_kept = (u < likely) | (moved[i] <= 0)
-        carried = dr.select(is_kept, kept[i], moved[i])
-        chance = dr.select(is_kept, likely, 1 - likely)
-        weights.append(ratio(carried, chance))
-        wavelengths.append(dr.select(is_kept, nm[i], moved_nm[i]))
-    return mi.Spectrum(*weights), mi.Spectrum(*wavelengths)
 
 
 def _weight(pdf: Any, other: Any) -> Any:

@@ -20,6 +20,11 @@ _FROM_LAMPS = 0.75
 noise where fluorescent light excites; less where lamps are narrow."""
 
 
+_WORTH_BY_LAMPS = 0.5
+"""Share of a wavelength's worth that the lamps decide. More is noise where fluorescent light goes from
+surface to surface; less is noise where lamps are narrow."""
+
+
 class Lamps:
     """The wavelengths of a scene's lights as a density to draw from."""
 
@@ -37,6 +42,11 @@ class Lamps:
     def spread_power(self) -> NDArray[np.float64]:
         """Power at each nm to expect on a surface: the lamps', and some at every wavelength."""
         return _FROM_LAMPS * _relative(self._power) + (1 - _FROM_LAMPS) / self._power.size
+
+    def worth(self, nm: Any) -> Any:
+        """How much light to expect at a wavelength, 1 on average from 300 to 830 nm; more than 0."""
+        share = self._density.eval_pdf_normalized(nm) * float(FINE_NM[-1] - FINE_NM[0])
+        return _WORTH_BY_LAMPS * share + (1 - _WORTH_BY_LAMPS)
 
     def draw(self, choice: Any, u: Any) -> tuple[Any, Any, Any]:
         """Whether a draw follows the lamps; the wavelength if so; what is left of the choice."""

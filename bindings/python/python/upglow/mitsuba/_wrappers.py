@@ -14,12 +14,11 @@ Fluorescence = Callable[[Any, Any, Any], tuple[Any, Any]]
 """Takes a surface interaction, two numbers and a mask; see `UpglowBSDF.fluorescence`."""
 
 
-def fluorescent_surfaces(scene: Any) -> list[tuple[Any, Fluorescence]]:
-    """The surfaces of a scene that fluoresce, each with its draws.
+def fluorescent_surfaces(scene: Any, lamps: Lamps) -> list[tuple[Any, Fluorescence]]:
+    """The surfaces of a scene with such lamps that fluoresce, each with its draws.
 
     Warns of those that hide a fluorescent surface in a way that is not known here.
     """
-    lamps = Lamps(scene)
     answers = [(surface, _fluorescence(surface, lamps)) for surface in _surfaces(scene)]
     return [(surface, answer) for surface, answer in answers if answer is not None]
 
