@@ -140,6 +140,48 @@ impl UpglowMaterial {
     }
 }
 
+/// Writes what a material answers to `place`, which messages call `name`.
+///
+/// # Safety
+///
+/// Pointers are null or point to a material that was looked up and to room for the answer.
+#[inline(always)]
+pub(crate) unsafe fn answer<T>(
+    material: *const UpglowMaterial,
+    (place, name): (*mut T, &'static str),
+    ask: impl FnOnce(&Blend<'_>) -> T,
+) -> UpglowStatus {
+    guarded(|| {
+        // SAFETY: the caller keeps this function's promise.
+        let (material, output) = unsafe { (looked_up(material)?, Output::new(place, name)?) };
+        output.write(ask(material));
+        Ok(())
+    })
+}
+
+/// [`answer`] to a question with `N` values at `values`, which messages call `values_name`.
+///
+/// # Safety
+///
+/// Pointers are null or point to a material that was looked up, to `N` values and to room for the
+/// answer, which may be where the values are.
+#[inline(always)]
+pub(crate) unsafe fn answer_to<const N: usize, T>(
+    material: *const UpglowMaterial,
+    (values, values_name): (*const f32, &'static str),
+    (place, name): (*mut T, &'static str),
+    ask: impl FnOnce(&Blend<'_>, [f32; N]) -> T,
+) -> UpglowStatus {
+    guarded(|| {
+        // SAFETY: the caller keeps this function's promise.
+        let (material, values) = unsafe { (looked_up(material)?, array(values, values_name)?) };
+        // SAFETY: the same.
+        let output = unsafe { Output::new(place, name)? };
+        output.write(ask(material, values));
+        Ok(())
+    })
+}
+
 /// Whether any light comes back at another wavelength.
 ///
 /// # Safety
@@ -150,13 +192,8 @@ pub unsafe extern "C" fn upglow_is_fluorescent(
     material: *const UpglowMaterial,
     is_fluorescent: *mut bool,
 ) -> UpglowStatus {
-    guarded(|| {
-        // SAFETY: the caller keeps this function's promise.
-        let (material, output) =
-            unsafe { (looked_up(material)?, Output::new(is_fluorescent, "is_fluorescent")?) };
-        output.write(material.is_fluorescent());
-        Ok(())
-    })
+    // SAFETY: the caller keeps this function's promise, which is the same.
+    unsafe { answer(material, (is_fluorescent, "is_fluorescent"), |m| m.is_fluorescent()) }
 }
 
 /// Share of incident light at `lambda_nm` that is reflected at the same wavelength, 0 to 1; divided by
@@ -173,13 +210,8 @@ pub unsafe extern "C" fn upglow_reflectance(
     lambda_nm: f32,
     reflectance: *mut f32,
 ) -> UpglowStatus {
-    guarded(|| {
-        // SAFETY: the caller keeps this function's promise.
-        let (material, output) =
-            unsafe { (looked_up(material)?, Output::new(reflectance, "reflectance")?) };
-        output.write(material.reflectance(lambda_nm));
-        Ok(())
-    })
+    // SAFETY: the caller keeps this function's promise, which is the same.
+    unsafe { answer(material, (reflectance, "reflectance"), |m| m.reflectance(lambda_nm)) }
 }
 
 /// `upglow_reflectance` at 4 wavelengths (nm), faster than one by one. Both arrays may be the same.
@@ -196,15 +228,11 @@ pub unsafe extern "C" fn upglow_reflectance_4(
     lambda_nm: *const f32,
     reflectance: *mut f32,
 ) -> UpglowStatus {
-    guarded(|| {
-        // SAFETY: the caller keeps this function's promise.
-        let (material, lambda_nm) =
-            unsafe { (looked_up(material)?, array(lambda_nm, "lambda_nm")?) };
-        // SAFETY: the same.
-        let output = unsafe { Output::new(reflectance.cast::<[f32; 4]>(), "reflectance")? };
-        output.write(material.reflectance4(lambda_nm));
-        Ok(())
-    })
+    // SAFETY: the caller keeps this function's promise, which is the same.
+    unsafe {
+        let place = (reflectance.cast::<[f32; 4]>(), "reflectance");
+        answer_to(material, (lambda_nm, "lambda_nm"), place, |m, nm| m.reflectance4(nm))
+    }
 }
 
 /// `upglow_reflectance` at 8 wavelengths (nm), faster than one by one. Both arrays may be the same.
@@ -221,15 +249,11 @@ pub unsafe extern "C" fn upglow_reflectance_8(
     lambda_nm: *const f32,
     reflectance: *mut f32,
 ) -> UpglowStatus {
-    guarded(|| {
-        // SAFETY: the caller keeps this function's promise.
-        let (material, lambda_nm) =
-            unsafe { (looked_up(material)?, array(lambda_nm, "lambda_nm")?) };
-        // SAFETY: the same.
-        let output = unsafe { Output::new(reflectance.cast::<[f32; 8]>(), "reflectance")? };
-        output.write(material.reflectance8(lambda_nm));
-        Ok(())
-    })
+    // SAFETY: the caller keeps this function's promise, which is the same.
+    unsafe {
+        let place = (reflectance.cast::<[f32; 8]>(), "reflectance");
+        answer_to(material, (lambda_nm, "lambda_nm"), place, |m, nm| m.reflectance8(nm))
+    }
 }
 
 /// Energy that comes out per nm at `out_nm` by fluorescence, per unit that came in at `in_nm`; in
@@ -245,12 +269,8 @@ pub unsafe extern "C" fn upglow_reradiation(
     out_nm: f32,
     per_nm: *mut f32,
 ) -> UpglowStatus {
-    guarded(|| {
-        // SAFETY: the caller keeps this function's promise.
-        let (material, output) = unsafe { (looked_up(material)?, Output::new(per_nm, "per_nm")?) };
-        output.write(material.reradiation_per_nm(in_nm, out_nm));
-        Ok(())
-    })
+    // SAFETY: the caller keeps this function's promise, which is the same.
+    unsafe { answer(material, (per_nm, "per_nm"), |m| m.reradiation_per_nm(in_nm, out_nm)) }
 }
 
 /// Share of incident light at `in_nm` that comes out at any wavelength, 0 to 1: reflectance and the
@@ -265,10 +285,6 @@ pub unsafe extern "C" fn upglow_albedo(
     in_nm: f32,
     albedo: *mut f32,
 ) -> UpglowStatus {
-    guarded(|| {
-        // SAFETY: the caller keeps this function's promise.
-        let (material, output) = unsafe { (looked_up(material)?, Output::new(albedo, "albedo")?) };
-        output.write(material.albedo(in_nm));
-        Ok(())
-    })
+    // SAFETY: the caller keeps this function's promise, which is the same.
+    unsafe { answer(material, (albedo, "albedo"), |m| m.albedo(in_nm)) }
 }

@@ -2,9 +2,8 @@
 
 use upglow::{Draw, Sample};
 
-use crate::failure::{UpglowStatus, guarded};
-use crate::material::{UpglowMaterial, looked_up};
-use crate::pointer::{Output, array};
+use crate::failure::UpglowStatus;
+use crate::material::{UpglowMaterial, answer, answer_to};
 
 /// How a wavelength was drawn.
 #[repr(C)]
@@ -72,14 +71,12 @@ pub unsafe extern "C" fn upglow_sample_incident(
     u: *const f32,
     sample: *mut UpglowSample,
 ) -> UpglowStatus {
-    guarded(|| {
-        // SAFETY: the caller keeps this function's promise.
-        let (material, u) = unsafe { (looked_up(material)?, array(u, "u")?) };
-        // SAFETY: the same.
-        let output = unsafe { Output::new(sample, "sample")? };
-        output.write(UpglowSample::new(out_nm, material.sample_incident(out_nm, u)));
-        Ok(())
-    })
+    // SAFETY: the caller keeps this function's promise, which is the same.
+    unsafe {
+        answer_to(material, (u, "u"), (sample, "sample"), |m, u| {
+            UpglowSample::new(out_nm, m.sample_incident(out_nm, u))
+        })
+    }
 }
 
 /// The density, 1/nm, with which `upglow_sample_incident` draws `in_nm` by fluorescence.
@@ -94,12 +91,8 @@ pub unsafe extern "C" fn upglow_incident_pdf(
     out_nm: f32,
     per_nm: *mut f32,
 ) -> UpglowStatus {
-    guarded(|| {
-        // SAFETY: the caller keeps this function's promise.
-        let (material, output) = unsafe { (looked_up(material)?, Output::new(per_nm, "per_nm")?) };
-        output.write(material.incident_pdf_per_nm(in_nm, out_nm));
-        Ok(())
-    })
+    // SAFETY: the caller keeps this function's promise, which is the same.
+    unsafe { answer(material, (per_nm, "per_nm"), |m| m.incident_pdf_per_nm(in_nm, out_nm)) }
 }
 
 /// The probability, 0 to 1, that `upglow_sample_incident` keeps the wavelength.
@@ -113,13 +106,10 @@ pub unsafe extern "C" fn upglow_incident_elastic_probability(
     out_nm: f32,
     probability: *mut f32,
 ) -> UpglowStatus {
-    guarded(|| {
-        // SAFETY: the caller keeps this function's promise.
-        let (material, output) =
-            unsafe { (looked_up(material)?, Output::new(probability, "probability")?) };
-        output.write(material.incident_elastic_probability(out_nm));
-        Ok(())
-    })
+    // SAFETY: the caller keeps this function's promise, which is the same.
+    unsafe {
+        answer(material, (probability, "probability"), |m| m.incident_elastic_probability(out_nm))
+    }
 }
 
 /// Draws the wavelength of the light that leaves, given that of incident light: a path from the
@@ -141,14 +131,12 @@ pub unsafe extern "C" fn upglow_sample_outgoing(
     u: *const f32,
     sample: *mut UpglowSample,
 ) -> UpglowStatus {
-    guarded(|| {
-        // SAFETY: the caller keeps this function's promise.
-        let (material, u) = unsafe { (looked_up(material)?, array(u, "u")?) };
-        // SAFETY: the same.
-        let output = unsafe { Output::new(sample, "sample")? };
-        output.write(UpglowSample::new(in_nm, material.sample_outgoing(in_nm, u)));
-        Ok(())
-    })
+    // SAFETY: the caller keeps this function's promise, which is the same.
+    unsafe {
+        answer_to(material, (u, "u"), (sample, "sample"), |m, u| {
+            UpglowSample::new(in_nm, m.sample_outgoing(in_nm, u))
+        })
+    }
 }
 
 /// The density, 1/nm, with which `upglow_sample_outgoing` draws `out_nm` by fluorescence.
@@ -163,12 +151,8 @@ pub unsafe extern "C" fn upglow_outgoing_pdf(
     out_nm: f32,
     per_nm: *mut f32,
 ) -> UpglowStatus {
-    guarded(|| {
-        // SAFETY: the caller keeps this function's promise.
-        let (material, output) = unsafe { (looked_up(material)?, Output::new(per_nm, "per_nm")?) };
-        output.write(material.outgoing_pdf_per_nm(in_nm, out_nm));
-        Ok(())
-    })
+    // SAFETY: the caller keeps this function's promise, which is the same.
+    unsafe { answer(material, (per_nm, "per_nm"), |m| m.outgoing_pdf_per_nm(in_nm, out_nm)) }
 }
 
 /// The probability, 0 to 1, that `upglow_sample_outgoing` keeps the wavelength.
@@ -182,11 +166,8 @@ pub unsafe extern "C" fn upglow_outgoing_elastic_probability(
     in_nm: f32,
     probability: *mut f32,
 ) -> UpglowStatus {
-    guarded(|| {
-        // SAFETY: the caller keeps this function's promise.
-        let (material, output) =
-            unsafe { (looked_up(material)?, Output::new(probability, "probability")?) };
-        output.write(material.outgoing_elastic_probability(in_nm));
-        Ok(())
-    })
+    // SAFETY: the caller keeps this function's promise, which is the same.
+    unsafe {
+        answer(material, (probability, "probability"), |m| m.outgoing_elastic_probability(in_nm))
+    }
 }
