@@ -36,6 +36,9 @@ def main() -> None:
     parser.add_argument("--colors", type=int, default=4_000_000, help="colors in the array")
     parser.add_argument("--resolution", type=int, default=32, help="nodes along an axis")
     options = parser.parse_args()
+    for name, least in (("colors", 1), ("resolution", 2)):
+        if (found := getattr(options, name)) < least:
+            parser.error(f"--{name} is {found}, expected {least} or more")
     cube = upglow.build(resolution=options.resolution)
     double = np.random.default_rng(0).random((options.colors, 3))
     single = double.astype(np.float32)

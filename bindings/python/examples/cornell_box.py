@@ -211,7 +211,14 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--out", type=Path, default=Path("cornell_box.png"), help="the PNG")
     parser.add_argument("--exr", type=Path, help="folder for the six pictures as EXR in XYZ")
     parser.add_argument("--variant", default="llvm_ad_spectral", help="variant of the renderer")
-    return parser.parse_args()
+    options = parser.parse_args()
+    for name, least in (("spp", 1), ("size", 1), ("resolution", 2)):
+        if (found := getattr(options, name)) < least:
+            parser.error(f"--{name} is {found}, expected {least} or more")
+    # Said now, and not after minutes of rendering.
+    if not options.out.parent.is_dir():
+        parser.error(f"--out is {options.out}, expected a path in a folder that is there")
+    return options
 
 
 def main() -> None:
