@@ -17,8 +17,10 @@ use crate::{Adaptation, Colorimetry, Grid, Illuminant, Observer, RgbSpace};
 /// diffuser and grays are flat for every observer; with [`Adaptation::None`] they are where the
 /// numbers put them.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Contract {
     /// Primaries and white of the RGB numbers.
+    #[cfg_attr(feature = "serde", serde(flatten))]
     pub space: RgbSpace,
     /// The light that the material is seen under.
     pub illuminant: Illuminant,

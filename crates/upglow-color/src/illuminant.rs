@@ -7,8 +7,10 @@ use crate::{
 
 /// A named light: relative spectral power on [`Grid::FINE`], 300 to 830 nm.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(transparent))]
 pub struct Illuminant {
     name: String,
+    #[cfg_attr(feature = "serde", serde(skip))]
     power: Spectrum,
 }
 

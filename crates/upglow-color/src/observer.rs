@@ -11,9 +11,11 @@ use crate::{
 ///
 /// Their common scale is free, as Y = 1 is always the perfect diffuser; their ratios are not.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(transparent))]
 pub struct Observer {
     name: String,
     /// x̄, ȳ, z̄ on [`Grid::FINE`].
+    #[cfg_attr(feature = "serde", serde(skip))]
     matching: [Spectrum; 3],
 }
 

@@ -4,9 +4,13 @@ use crate::{Matrix3, Xyz};
 
 /// The primaries and white of an RGB space, as CIE 1931 chromaticities.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct RgbSpace {
+    #[cfg_attr(feature = "serde", serde(rename = "rgb_space"))]
     name: String,
+    #[cfg_attr(feature = "serde", serde(rename = "primaries_xy"))]
     primaries: [[f64; 2]; 3],
+    #[cfg_attr(feature = "serde", serde(rename = "white_xy"))]
     white: [f64; 2],
 }
 

@@ -4,10 +4,12 @@
 ///
 /// Any finite number is allowed: AP1's red primary has Z < 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Xyz(pub [f64; 3]);
 
 /// Linear-light RGB in the contract's space; (1, 1, 1) is that space's white.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct LinearRgb(pub [f64; 3]);
 
 impl LinearRgb {
