@@ -20,6 +20,7 @@ pub struct Cube {
 
 /// How the materials of a cube were found. Nothing is known by default.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct FitRecord {
     /// Name of the color difference that was minimized.
     pub metric: String,

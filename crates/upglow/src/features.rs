@@ -4,6 +4,7 @@ use crate::{Sigmoid, Vertex};
 
 /// A sigmoid reflectance described by its shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Features {
     /// Wavelength of the extremum, nm.
     pub shift_nm: f64,

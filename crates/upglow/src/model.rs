@@ -33,6 +33,7 @@ impl Model {
 
 /// What is conserved when absorbed light is given back.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "lowercase"))]
 pub enum Accounting {
     /// All absorbed energy times the quantum yield comes out, as the seed paper has it.
     #[default]
@@ -55,6 +56,7 @@ impl Accounting {
 
 /// What two dyes in one material do with each other's light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "lowercase"))]
 pub enum Mixing {
     /// One absorption, one emission: what either absorbs comes out as the mixed emission.
     #[default]
@@ -80,11 +82,12 @@ impl Default for QuantumYield {
 
 /// The choices in a [`DyeModel`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct DyeOptions {
-    /// Energy (default) or photons.
-    pub accounting: Accounting,
     /// Pooled (default) or separate.
     pub mixing: Mixing,
+    /// Energy (default) or photons.
+    pub accounting: Accounting,
     /// 1 (default), another number, or measured.
     pub quantum_yield: QuantumYield,
     /// Optical density A > 0 of the pigment at its peak: the absorptance is 1 − 10^(−A·a), broader
@@ -235,6 +238,7 @@ impl DyeCurves {
 ///
 /// `jung`; its widths are not published, so they are options here.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct AnalyticModel {
     absorption_fwhm_nm: f64,
     emission_fwhm_nm: f64,
@@ -371,6 +375,13 @@ pub(crate) use named_choices;
 
 named_choices!(Accounting, "accounting", "energy or photon", Energy = "energy", Photon = "photon");
 named_choices!(Mixing, "mixing", "pooled or separate", Pooled = "pooled", Separate = "separate");
+
+#[cfg(feature = "serde")]
+impl serde::Serialize for QuantumYield {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
 
 impl fmt::Display for QuantumYield {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -8,6 +8,7 @@
 ///
 /// `jakob`; `konig`, equation 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Sigmoid {
     /// Coefficient of λ², 1/nm².
     pub c0: f64,
