@@ -4,6 +4,7 @@ use upglow::Cube;
 
 /// What the stored differences of a cube's nodes add up to.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct CubeSummary {
     /// Nodes of the cube.
     pub nodes: usize,

@@ -39,6 +39,7 @@ impl VerifyReport {
 
 /// One law or report.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Check {
     /// A short name that does not change, in words with hyphens.
     pub name: &'static str,
@@ -62,6 +63,7 @@ pub struct Check {
 
 /// What came of a check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "lowercase"))]
 pub enum Verdict {
     /// The law holds.
     Holds,
@@ -70,6 +72,7 @@ pub enum Verdict {
     /// No law, only a figure.
     Reported,
     /// The law does not apply to this cube or interpolation, and was not checked.
+    #[cfg_attr(feature = "serde", serde(rename = "not applicable"))]
     NotApplicable,
 }
 
@@ -136,5 +139,26 @@ impl fmt::Display for Offender {
             Some(nm) => write!(f, ", {nm} nm"),
             None => Ok(()),
         }
+    }
+}
+
+/// All that any offender has; `null` for what this one has not.
+#[cfg(feature = "serde")]
+impl serde::Serialize for Offender {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        use serde::ser::SerializeStruct as _;
+
+        let (node, rgb, dye) = match &self.place {
+            Place::Node { node, rgb } => (Some(node), Some(rgb.0), None),
+            Place::Point { rgb } => (None, Some(rgb.0), None),
+            Place::Dye { name } => (None, None, Some(name)),
+        };
+        let mut offender = serializer.serialize_struct("Offender", 5)?;
+        offender.serialize_field("found", &self.found)?;
+        offender.serialize_field("wavelength_nm", &self.wavelength_nm)?;
+        offender.serialize_field("node", &node)?;
+        offender.serialize_field("rgb", &rgb)?;
+        offender.serialize_field("dye", &dye)?;
+        offender.end()
     }
 }
