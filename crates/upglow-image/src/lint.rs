@@ -13,6 +13,7 @@ use crate::{
 
 /// How bad a finding is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "lowercase"))]
 pub enum Severity {
     /// Readers may guess, or some will refuse the file.
     Warning,
@@ -64,8 +65,10 @@ pub enum Rule {
 
 /// One thing that is wrong with a file.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Finding {
     /// The rule that is broken.
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub rule: Rule,
     /// How bad that is.
     pub severity: Severity,
@@ -87,19 +90,25 @@ impl fmt::Display for Finding {
 
 /// What a linter saw in a file.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Lint {
-    /// What is wrong; empty for a well-formed file.
-    pub findings: Vec<Finding>,
     /// Number of `T.λ` channels.
+    #[cfg_attr(feature = "serde", serde(rename = "reflectance_channels"))]
     pub reflectance: usize,
     /// Number of `S0.` channels.
+    #[cfg_attr(feature = "serde", serde(rename = "radiance_channels"))]
     pub radiance: usize,
     /// Number of `S1.` to `S3.` channels.
+    #[cfg_attr(feature = "serde", serde(rename = "polarization_channels"))]
     pub polarization: usize,
     /// Number of `T.λ.λ'` channels.
+    #[cfg_attr(feature = "serde", serde(rename = "reradiation_channels"))]
     pub reradiation: usize,
     /// Whether the file says that it is in our compact form.
+    #[cfg_attr(feature = "serde", serde(rename = "compact"))]
     pub is_compact: bool,
+    /// What is wrong; empty for a well-formed file.
+    pub findings: Vec<Finding>,
 }
 
 impl Lint {

@@ -5,16 +5,20 @@ use upglow_color::{Colorimetry, LinearRgb, Xyz, ciede2000};
 
 /// How well a cube's blend shows the texels in 0..=1.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct CubeOpinion {
     /// Texels that the cube was asked for: those with all values in 0..=1.
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub texels: u64,
     /// Share of them shown within 1 ΔE00.
     pub within_one: f64,
     /// Share of them shown within 2 ΔE00.
     pub within_two: f64,
     /// Mean ΔE00.
+    #[cfg_attr(feature = "serde", serde(rename = "mean_de2000"))]
     pub mean: f64,
     /// Greatest ΔE00.
+    #[cfg_attr(feature = "serde", serde(rename = "greatest_de2000"))]
     pub greatest: f64,
 }
 

@@ -64,14 +64,19 @@ impl Counts {
 
 /// A value that is no component of a color in a cube.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum Flaw {
     /// Finite and above 1.
+    #[cfg_attr(feature = "serde", serde(rename = "above 1"))]
     AboveOne,
     /// Finite and below 0.
+    #[cfg_attr(feature = "serde", serde(rename = "negative"))]
     Negative,
     /// No number.
+    #[cfg_attr(feature = "serde", serde(rename = "no number"))]
     NotANumber,
     /// Infinite, of either sign.
+    #[cfg_attr(feature = "serde", serde(rename = "infinite"))]
     Infinite,
 }
 
@@ -92,6 +97,7 @@ impl Flaw {
 
 /// A texel with a flaw.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Located {
     /// What is wrong with it.
     pub flaw: Flaw,
