@@ -116,7 +116,10 @@ def test_unmeasured_yields_are_a_warning() -> None:
         ({"resolution": 1}, "resolution 1, expected 2 to 256"),
         ({"slope_max_per_nm": 1.0}, "slope limit 1/nm, expected 0.0001 to 0.2/nm"),
         ({"metric": "de94"}, 'unknown metric "de94", expected de2000, de76 or rgb'),
-        ({"method": "x"}, 'unknown method "x", expected search, exhaustive, seed or seed-features'),
+        (
+            {"method": "x"},
+            'unknown method "x", expected search, exhaustive, konig2020 or konig2020-features',
+        ),
         ({"threads": 0}, "threads is 0, expected 1 to 1024"),
         ({"model": upglow.Dyes(mixing="x")}, 'unknown mixing "x", expected pooled or separate'),
         ({"model": upglow.Dyes(quantum_yield=2.0)}, "quantum yield 2, expected 0 to 1"),

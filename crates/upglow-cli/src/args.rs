@@ -154,12 +154,12 @@ pub(crate) struct BuildArgs {
     /// Greatest slope of any reflectance, 0.0001 to 0.2 per nm, or none
     #[arg(long, default_value = "0.01", value_name = "SLOPE|none", help_heading = "Fit")]
     pub(crate) slope_max_per_nm: SlopeLimit,
-    /// How to search: search (ours), exhaustive (slower, its yardstick), seed or seed-features (the
-    /// seed paper's, moving coefficients or features)
+    /// How to search: search (ours), exhaustive (slower, its yardstick), konig2020 or
+    /// konig2020-features (that paper's, moving coefficients or features)
     #[arg(long, default_value = "search", value_name = "NAME", help_heading = "Fit")]
     pub(crate) method: Method,
     /// How often a node that missed its color tries its neighbors' materials [default: 2, and 4
-    /// for the seed's methods]
+    /// for those of konig2020]
     #[arg(long, value_name = "N", value_parser = count, help_heading = "Fit")]
     pub(crate) sweeps: Option<u32>,
     /// Threads; the file does not depend on it [default: one for each core]

@@ -1,9 +1,7 @@
 //! Chromatic adaptation from the white of an RGB space to the white of the illuminant.
 
-use std::fmt;
-use std::str::FromStr;
-
-use crate::{Matrix3, Xyz};
+use crate::matrix::Matrix3;
+use crate::values::Xyz;
 
 /// What happens to colors when the space's white is not the illuminant's.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -36,33 +34,7 @@ impl Adaptation {
     }
 }
 
-impl fmt::Display for Adaptation {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Bradford => "bradford",
-            Self::None => "none",
-        })
-    }
-}
-
-/// A name that is no chromatic adaptation.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("unknown adaptation {found:?}, expected bradford or none")]
-pub struct UnknownAdaptation {
-    /// The name given.
-    pub found: String,
-}
-
-impl FromStr for Adaptation {
-    type Err = UnknownAdaptation;
-
-    fn from_str(name: &str) -> Result<Self, Self::Err> {
-        [Self::Bradford, Self::None]
-            .into_iter()
-            .find(|a| a.to_string() == name)
-            .ok_or_else(|| UnknownAdaptation { found: name.into() })
-    }
-}
+crate::choices!(Adaptation, "adaptation", Bradford = "bradford", None = "none");
 
 #[cfg(test)]
 mod tests {

@@ -25,6 +25,7 @@
 //! Out of scope: materials (crate `upglow`) and fitting (crate `upglow-fit`).
 
 mod adaptation;
+mod choice;
 mod ciede2000;
 mod color_solid;
 mod colorimetry;
@@ -44,7 +45,8 @@ mod srgb_curve;
 mod tables;
 mod values;
 
-pub use adaptation::{Adaptation, UnknownAdaptation};
+pub use adaptation::Adaptation;
+pub use choice::{Choice, UnknownChoice};
 pub use ciede2000::{ciede2000, ciede2000_residuals};
 pub use color_solid::{ColorSolid, Nearest};
 pub use colorimetry::Colorimetry;
@@ -54,7 +56,7 @@ pub use grid::{Grid, GridError};
 pub use illuminant::{Illuminant, IlluminantError};
 pub use lab::{Lab, lab_from_xyz, lab_jacobian};
 pub use matrix::Matrix3;
-pub use metric::{Goal, Metric, UnknownMetric};
+pub use metric::{Goal, Metric};
 pub use observer::{Observer, ObserverError};
 pub use rgb_space::{RgbSpace, RgbSpaceError};
 pub use samples::{Place, SampleRules, SamplesError, curves_from_samples};

@@ -1,8 +1,5 @@
 //! Color difference metrics. A new one is a variant here: a distance, and residuals with derivatives.
 
-use std::fmt;
-use std::str::FromStr;
-
 use crate::{Colorimetry, Lab, Matrix3, Xyz, ciede2000_residuals, lab_jacobian};
 
 /// How far one color is from another.
@@ -22,9 +19,6 @@ pub enum Metric {
 const RGB_SCALE: f64 = 100.0;
 
 impl Metric {
-    /// Every metric.
-    pub const ALL: [Self; 3] = [Self::Rgb, Self::De76, Self::De2000];
-
     /// The distance between two colors under `colorimetry`.
     pub fn distance(self, colorimetry: &Colorimetry, target: Xyz, sample: Xyz) -> f64 {
         norm(self.goal(colorimetry, target).residuals(sample).0)
@@ -105,39 +99,12 @@ fn norm(v: [f64; 3]) -> f64 {
     v.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-impl fmt::Display for Metric {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Rgb => "rgb",
-            Self::De76 => "de76",
-            Self::De2000 => "de2000",
-        })
-    }
-}
-
-/// A name that is no metric.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("unknown metric {found:?}, expected de2000, de76 or rgb")]
-pub struct UnknownMetric {
-    /// The name given.
-    pub found: String,
-}
-
-impl FromStr for Metric {
-    type Err = UnknownMetric;
-
-    fn from_str(name: &str) -> Result<Self, Self::Err> {
-        Self::ALL
-            .into_iter()
-            .find(|metric| metric.to_string() == name)
-            .ok_or_else(|| UnknownMetric { found: name.into() })
-    }
-}
+crate::choices!(Metric, "metric", De2000 = "de2000", De76 = "de76", Rgb = "rgb");
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Contract, Grid};
+    use crate::{Choice, Contract, Grid};
 
     #[test]
     fn residuals_have_the_distance_as_their_norm_and_exact_derivatives() {
@@ -146,7 +113,7 @@ mod tests {
         const TOLERANCE: f64 = 1e-5;
         let colorimetry = Contract::default().on(Grid::FIT);
         let (target, sample) = (Xyz([0.4, 0.3, 0.2]), [0.35, 0.33, 0.31]);
-        for metric in Metric::ALL {
+        for &metric in Metric::ALL {
             let goal = metric.goal(&colorimetry, target);
             let (residuals, jacobian) = goal.residuals(Xyz(sample));
             let distance = metric.distance(&colorimetry, target, Xyz(sample));
@@ -170,7 +137,7 @@ mod tests {
 
     #[test]
     fn names_round_trip() {
-        for metric in Metric::ALL {
+        for &metric in Metric::ALL {
             assert_eq!(metric.to_string().parse(), Ok(metric));
         }
         assert!("de94".parse::<Metric>().is_err());

@@ -1,5 +1,8 @@
 //! Triples that look alike and mean different things.
 
+use std::iter::Sum;
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
+
 /// Relative CIE tristimulus values; Y = 1 is the perfect diffuser under the contract's illuminant.
 ///
 /// Any finite number is allowed: AP1's red primary has Z < 0.
@@ -30,5 +33,108 @@ impl Xyz {
     /// The values of a chromaticity (x, y) with Y = 1.
     pub fn from_chromaticity([x, y]: [f64; 2]) -> Self {
         Self([x / y, 1.0, (1.0 - x - y) / y])
+    }
+}
+
+/// Both are vectors: lights add up component by component.
+macro_rules! vector {
+    ($vector:ident) => {
+        impl From<[f64; 3]> for $vector {
+            #[inline]
+            fn from(components: [f64; 3]) -> Self {
+                Self(components)
+            }
+        }
+
+        impl From<$vector> for [f64; 3] {
+            #[inline]
+            fn from(vector: $vector) -> Self {
+                vector.0
+            }
+        }
+
+        impl Add for $vector {
+            type Output = Self;
+
+            #[inline]
+            fn add(self, rhs: Self) -> Self {
+                Self([0, 1, 2].map(|k| self.0[k] + rhs.0[k]))
+            }
+        }
+
+        impl AddAssign for $vector {
+            #[inline]
+            fn add_assign(&mut self, rhs: Self) {
+                *self = *self + rhs;
+            }
+        }
+
+        impl Sub for $vector {
+            type Output = Self;
+
+            #[inline]
+            fn sub(self, rhs: Self) -> Self {
+                Self([0, 1, 2].map(|k| self.0[k] - rhs.0[k]))
+            }
+        }
+
+        impl Neg for $vector {
+            type Output = Self;
+
+            #[inline]
+            fn neg(self) -> Self {
+                Self(self.0.map(|v| -v))
+            }
+        }
+
+        impl Mul<f64> for $vector {
+            type Output = Self;
+
+            #[inline]
+            fn mul(self, factor: f64) -> Self {
+                Self(self.0.map(|v| v * factor))
+            }
+        }
+
+        impl Mul<$vector> for f64 {
+            type Output = $vector;
+
+            #[inline]
+            fn mul(self, vector: $vector) -> $vector {
+                vector * self
+            }
+        }
+
+        impl Div<f64> for $vector {
+            type Output = Self;
+
+            #[inline]
+            fn div(self, divisor: f64) -> Self {
+                Self(self.0.map(|v| v / divisor))
+            }
+        }
+
+        /// From zero, in the order given.
+        impl Sum for $vector {
+            fn sum<I: Iterator<Item = Self>>(vectors: I) -> Self {
+                vectors.fold(Self::default(), Add::add)
+            }
+        }
+    };
+}
+
+vector!(Xyz);
+vector!(LinearRgb);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arithmetic_is_by_component() {
+        let (a, b) = (Xyz([1.0, 2.0, 3.0]), Xyz([0.5, 0.25, -1.0]));
+        assert_eq!(a + b, [1.5, 2.25, 2.0].into());
+        assert_eq!([a, b, -b].into_iter().sum::<Xyz>(), a + b - b);
+        assert_eq!((2.0 * a, a / 2.0), (a + a, a * 0.5));
     }
 }

@@ -35,8 +35,7 @@ pub enum BuildError {
 /// at the corners of its cell; then, in as many sweeps as the options say, each node that missed
 /// its color tries the materials of its six neighbors, as they were before the sweep. So the result
 /// does not depend on the number of threads. [`Method::Exhaustive`](crate::Method::Exhaustive) and
-/// [`Method::Seed`](crate::Method::Seed) fit every
-/// node alone.
+/// the methods of König et al. 2020 fit every node alone.
 ///
 /// # Errors
 ///
@@ -69,7 +68,7 @@ pub fn build_cube(
         metric: options.metric.to_string(),
         slope_max_per_nm: options.slope_max_per_nm,
         sweeps: options.sweeps,
-        method: options.method.to_string(),
+        method: options.method.file_name().into(),
         evaluations: fitter.evaluations(),
     };
     Ok(Cube::new(contract.clone(), model.clone(), fit, resolution, nodes)?)

@@ -6,6 +6,7 @@ use upglow::{Edge, Fluorescence, Material, Model, ModelOnGrid};
 use upglow_color::{Contract, Grid, Lab, LinearRgb, Xyz};
 
 use crate::job::Job;
+use crate::konig2020::Parameters;
 use crate::problem::Shape;
 use crate::starts::StartTable;
 use crate::sums::{CLEAR, Lanes, Sums, lanes_from};
@@ -160,7 +161,8 @@ impl Fitter {
         job.gray().unwrap_or_else(|| match self.options.method {
             Method::Search => job.search(around),
             Method::Exhaustive => job.search_exhaustively(),
-            Method::Seed(parameters) => job.seed_first(parameters),
+            Method::Konig2020 => job.konig2020_first(Parameters::Coefficients),
+            Method::Konig2020Features => job.konig2020_first(Parameters::Features),
         })
     }
 
@@ -169,7 +171,10 @@ impl Fitter {
         let job = self.job(self.model.colorimetry().xyz_from_rgb(rgb));
         match self.options.method {
             Method::Search | Method::Exhaustive => job.improve(known, neighbors),
-            Method::Seed(parameters) => job.seed_again(parameters, known, neighbors),
+            Method::Konig2020 => job.konig2020_again(Parameters::Coefficients, known, neighbors),
+            Method::Konig2020Features => {
+                job.konig2020_again(Parameters::Features, known, neighbors)
+            }
         }
     }
 

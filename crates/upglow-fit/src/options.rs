@@ -1,9 +1,6 @@
 //! What a fit is asked for.
 
-use std::fmt;
-use std::str::FromStr;
-
-use upglow_color::Metric;
+use upglow_color::{Metric, choices};
 
 /// The choices in a fit, apart from contract and model.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,68 +25,45 @@ pub enum Method {
     Search,
     /// As `Search`, but following a hundred starts and more to their end: the yardstick for it.
     Exhaustive,
-    /// The seed paper's: from gray, then from the neighbors' materials, through all pairs of dyes.
+    /// The paper's: from gray, then from the neighbors' materials, through all pairs of dyes. The
+    /// solver moves c0, c1, c2 of a reflectance; the slope limit is a penalty.
     ///
     /// # Source
     ///
     /// `konig`, sections 4 and 5; `jung` for the sweeps.
-    Seed(Parameters),
-}
-
-/// What the seed's solver moves for a reflectance.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Parameters {
-    /// c0, c1, c2; the slope limit is a penalty.
-    #[default]
-    Coefficients,
-    /// Shift, width, slope; the slope limit is a bound.
-    Features,
+    Konig2020,
+    /// As `Konig2020`, but the solver moves shift, width, slope; the slope limit is a bound.
+    Konig2020Features,
 }
 
 impl Method {
+    /// The word for this method in the header of a cube.
+    pub(crate) const fn file_name(self) -> &'static str {
+        match self {
+            Self::Search => "search",
+            Self::Exhaustive => "exhaustive",
+            Self::Konig2020 => "seed",
+            Self::Konig2020Features => "seed-features",
+        }
+    }
+
     /// The sweeps that this way of searching needs: two for ours, four as the paper has them.
     pub const fn default_sweeps(self) -> u32 {
         match self {
             Self::Search | Self::Exhaustive => 2,
-            Self::Seed(_) => 4,
+            Self::Konig2020 | Self::Konig2020Features => 4,
         }
     }
 }
 
-impl fmt::Display for Method {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Search => "search",
-            Self::Exhaustive => "exhaustive",
-            Self::Seed(Parameters::Coefficients) => "seed",
-            Self::Seed(Parameters::Features) => "seed-features",
-        })
-    }
-}
-
-/// A word that names no method.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("unknown method {found:?}, expected search, exhaustive, seed or seed-features")]
-pub struct UnknownMethod {
-    /// The word given.
-    pub found: String,
-}
-
-impl FromStr for Method {
-    type Err = UnknownMethod;
-
-    fn from_str(name: &str) -> Result<Self, Self::Err> {
-        [
-            Self::Search,
-            Self::Exhaustive,
-            Self::Seed(Parameters::Coefficients),
-            Self::Seed(Parameters::Features),
-        ]
-        .into_iter()
-        .find(|method| method.to_string() == name)
-        .ok_or_else(|| UnknownMethod { found: name.into() })
-    }
-}
+choices!(
+    Method,
+    "method",
+    Search = "search",
+    Exhaustive = "exhaustive",
+    Konig2020 = "konig2020" | "seed",
+    Konig2020Features = "konig2020-features" | "seed-features",
+);
 
 impl Default for FitOptions {
     fn default() -> Self {

@@ -285,7 +285,7 @@ mod tests {
     use super::*;
     use crate::solver::jacobian_error;
     use upglow::{Accounting, DyeOptions, DyeSet, Mixing, Model};
-    use upglow_color::{Colorimetry, Contract, Grid, LinearRgb, Metric};
+    use upglow_color::{Choice, Colorimetry, Contract, Grid, LinearRgb, Metric};
 
     /// A central difference with the steps below errs by their squares and by rounding over them.
     const TOLERANCE: f64 = 1e-6;
@@ -294,7 +294,7 @@ mod tests {
 
     fn goals(colorimetry: &Colorimetry) -> Vec<Goal> {
         let target = colorimetry.xyz_from_rgb(LinearRgb([0.3, 0.6, 0.2]));
-        Metric::ALL.map(|metric| metric.goal(colorimetry, target)).to_vec()
+        Metric::ALL.iter().map(|metric| metric.goal(colorimetry, target)).collect()
     }
 
     #[test]

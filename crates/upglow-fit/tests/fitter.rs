@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use upglow::{
     Accounting, AnalyticModel, DyeModel, DyeOptions, DyeSet, Fluorescence, Mixing, Mixture, Model,
 };
-use upglow_color::{Contract, Grid, LinearRgb, Metric};
+use upglow_color::{Choice, Contract, Grid, LinearRgb, Metric};
 use upglow_fit::{ColorError, Fit, FitOptions, Fitter};
 
 /// The limit of the default options, 1/nm.
@@ -111,7 +111,7 @@ fn a_color_that_needs_little_fluorescence_gets_little() {
 #[test]
 fn every_metric_reaches_a_color_that_can_be_shown() {
     let model = seed8(DyeOptions::default());
-    for metric in Metric::ALL {
+    for &metric in Metric::ALL {
         let options = FitOptions { metric, ..FitOptions::default() };
         let fit = fitter(&model, options).fit(LinearRgb([0.2, 0.7, 0.4])).unwrap();
         assert!(fit.de2000 <= 0.01, "{metric} {fit:?}");

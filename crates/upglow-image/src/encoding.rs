@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use upglow_color::srgb_decoded;
+use upglow_color::{UnknownChoice, srgb_decoded};
 
 /// How stored numbers stand for linear light. Negative numbers are encoded by their size.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,23 +29,19 @@ impl Encoding {
     }
 }
 
-/// A word that names no encoding.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("unknown encoding {found:?}, expected linear, srgb or a gamma above 0, as 2.2")]
-pub struct UnknownEncoding {
-    /// The word.
-    pub found: String,
-}
-
 impl FromStr for Encoding {
-    type Err = UnknownEncoding;
+    type Err = UnknownChoice;
 
     fn from_str(word: &str) -> Result<Self, Self::Err> {
         let gamma = || word.parse().ok().filter(|g: &f64| g.is_finite() && *g > 0.0);
         match word {
             "linear" => Ok(Self::Linear),
             "srgb" => Ok(Self::Srgb),
-            _ => gamma().map(Self::Gamma).ok_or_else(|| UnknownEncoding { found: word.into() }),
+            _ => gamma().map(Self::Gamma).ok_or_else(|| UnknownChoice {
+                what: "encoding",
+                found: word.into(),
+                expected: "linear, srgb or a gamma above 0, as 2.2".into(),
+            }),
         }
     }
 }

@@ -66,7 +66,7 @@ pub use chromaticities::chromaticities;
 pub use compact::{
     CompactDye, CompactError, CompactForm, CompactLayout, Donaldson, MOST_EXTRA_CHANNELS,
 };
-pub use encoding::{Encoding, UnknownEncoding};
+pub use encoding::Encoding;
 pub use example_pictures::{EXAMPLE_PICTURES, ExamplePicture};
 pub use exr_attribute::{Attribute, Attributes};
 pub use exr_blocks::is_unpacking;
@@ -78,7 +78,7 @@ pub use linear_picture::{Assumed, LinearPicture, LinearPictureError};
 pub use lint::{Depth, Finding, Lint, Rule, Severity, lint};
 pub use material_picture::{MaterialPicture, MaterialPictureError};
 pub use picture::{Alpha, Picture, PictureError};
-pub use repair::{Repair, Repaired, Repairer, UnknownRepair, greatest_value};
+pub use repair::{Repair, Repaired, Repairer, greatest_value};
 pub use spectral_layout::{
     BISPECTRAL_UNIT, BispectralUnit, EMISSIVE_UNITS, LAYOUT_VERSION, LAYOUT_VERSION_VALUE,
     SpectralChannel, SpectralNameError,

@@ -1,10 +1,7 @@
 //! Values that no cube holds, and colors that no material shows, made into ones that can be baked.
 
-use std::fmt;
-use std::str::FromStr;
-
 use rayon::prelude::*;
-use upglow_color::LinearRgb;
+use upglow_color::{LinearRgb, choices};
 use upglow_fit::{StandingKind, StandingTable};
 
 use crate::rounding::to_single;
@@ -69,9 +66,6 @@ pub fn greatest_value(rgb: &[[f32; 3]]) -> f32 {
 }
 
 impl Repair {
-    /// Every repair.
-    pub const ALL: [Self; 3] = [Self::Clip, Self::Scale, Self::Nearest];
-
     /// Whether the whole picture must be read once, for [`greatest_value`], before a texel changes.
     pub fn reads_all_first(self) -> bool {
         self == Self::Scale
@@ -162,39 +156,14 @@ fn is_shown(rgb: [f32; 3], table: &StandingTable) -> bool {
     table.kind(LinearRgb(rgb.map(f64::from))) != StandingKind::Unreachable
 }
 
-impl fmt::Display for Repair {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Clip => "clip",
-            Self::Scale => "scale",
-            Self::Nearest => "nearest",
-        })
-    }
-}
-
-/// A name that is no repair.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("unknown repair {found:?}, expected clip, scale or nearest")]
-pub struct UnknownRepair {
-    /// The name given.
-    pub found: String,
-}
-
-impl FromStr for Repair {
-    type Err = UnknownRepair;
-
-    fn from_str(name: &str) -> Result<Self, Self::Err> {
-        let named = Self::ALL.into_iter().find(|repair| repair.to_string() == name);
-        named.ok_or_else(|| UnknownRepair { found: name.into() })
-    }
-}
+choices!(Repair, "repair", Clip = "clip", Scale = "scale", Nearest = "nearest");
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use proptest::prelude::*;
     use std::sync::OnceLock;
-    use upglow_color::Contract;
+    use upglow_color::{Choice, Contract};
 
     fn table() -> &'static StandingTable {
         static TABLE: OnceLock<StandingTable> = OnceLock::new();
@@ -213,7 +182,7 @@ mod tests {
         fn after_any_repair_all_values_are_in_range_and_a_second_one_changes_nothing(
             texels in prop::collection::vec(prop::array::uniform3(any_value()), 1..40),
         ) {
-            for repair in Repair::ALL {
+            for &repair in Repair::ALL {
                 let mut rgb = texels.clone();
                 let found = repair.of(greatest_value(&rgb), table()).repair(&mut rgb);
                 prop_assert!(rgb.as_flattened().iter().all(|v| (0.0..=1.0).contains(v)));
@@ -237,7 +206,7 @@ mod tests {
     #[test]
     fn colors_that_can_be_baked_stay_to_the_bit() {
         let good = [[0.0; 3], [1.0; 3], [0.2, 0.3, 0.4], [0.9, 0.0, 0.9]];
-        for repair in Repair::ALL {
+        for &repair in Repair::ALL {
             let mut rgb = good;
             let found = repair.of(greatest_value(&rgb), table()).repair(&mut rgb);
             assert_eq!((rgb, found), (good, Repaired::default()), "{repair}");
@@ -255,7 +224,7 @@ mod tests {
 
     #[test]
     fn names_round_trip() {
-        for repair in Repair::ALL {
+        for &repair in Repair::ALL {
             assert_eq!(repair.to_string().parse(), Ok(repair));
         }
         assert!("shift".parse::<Repair>().is_err());

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use upglow::{AnalyticModel, Cube, DyeModel, DyeOptions, DyeSet, Model};
 use upglow_color::{Contract, Metric};
-use upglow_fit::{FitOptions, Method, Parameters, Watch, build_cube};
+use upglow_fit::{FitOptions, Method, Watch, build_cube};
 
 use crate::StudyError;
 
@@ -60,18 +60,16 @@ impl StudyCube {
 
     /// How it is fitted.
     pub fn options(self) -> FitOptions {
-        let seed = |metric, sweeps, parameters| FitOptions {
-            metric,
-            sweeps,
-            method: Method::Seed(parameters),
-            ..FitOptions::default()
-        };
+        let konig2020 =
+            |metric, sweeps, method| FitOptions { metric, sweeps, method, ..FitOptions::default() };
         match self {
             Self::Reference => FitOptions::default(),
             Self::Search { metric } => FitOptions { metric, ..FitOptions::default() },
-            Self::Seed { metric, sweeps } => seed(metric, sweeps, Parameters::Coefficients),
-            Self::SeedFeatures => seed(Metric::De2000, PAPER_SWEEPS, Parameters::Features),
-            Self::SeedAnalytic { sweeps } => seed(Metric::De2000, sweeps, Parameters::Coefficients),
+            Self::Seed { metric, sweeps } => konig2020(metric, sweeps, Method::Konig2020),
+            Self::SeedFeatures => {
+                konig2020(Metric::De2000, PAPER_SWEEPS, Method::Konig2020Features)
+            }
+            Self::SeedAnalytic { sweeps } => konig2020(Metric::De2000, sweeps, Method::Konig2020),
         }
     }
 }

@@ -14,7 +14,7 @@ mod sheet;
 
 use upglow_fit::{BuildError, Watch};
 
-pub use display::{Display, UnknownDisplay};
+pub use display::Display;
 
 use crate::svg::Drawing;
 use crate::{Cubes, StudyError, raster};

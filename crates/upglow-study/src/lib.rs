@@ -26,5 +26,5 @@ pub use data::{
 };
 pub use error::StudyError;
 #[cfg(feature = "drawing")]
-pub use figures::{Display, Figure, FigureOptions, UnknownDisplay, figures};
+pub use figures::{Display, Figure, FigureOptions, figures};
 pub use report::{reproduce, to_markdown};

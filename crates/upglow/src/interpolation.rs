@@ -1,11 +1,7 @@
 //! What stands between the nodes of a cube.
 
-use std::fmt;
-use std::str::FromStr;
+use upglow_color::{LinearRgb, choices};
 
-use upglow_color::LinearRgb;
-
-use crate::model::{UnknownChoice, named_choices};
 use crate::{Features, Material, Sigmoid};
 
 /// How a color between nodes gets its material.
@@ -26,10 +22,9 @@ pub enum Interpolation {
     Hybrid,
 }
 
-named_choices!(
+choices!(
     Interpolation,
     "interpolation",
-    "blend, none, coefficients, features or hybrid",
     Blend = "blend",
     None = "none",
     Coefficients = "coefficients",

@@ -76,7 +76,7 @@ pub use material::{Fluorescence, Material};
 pub use mixture::Mixture;
 pub use model::{
     Accounting, AnalyticModel, DyeCurves, DyeModel, DyeOptions, Mixing, Model, ModelError,
-    QuantumYield, UnknownChoice,
+    QuantumYield,
 };
 pub use model_on_grid::{Emitted, ModelOnGrid};
 pub use sampling::{Draw, Sample};

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use upglow_color::{Grid, Spectrum};
+use upglow_color::{Grid, Spectrum, UnknownChoice, choices};
 
 use crate::DyeSet;
 use crate::bspline::Bell;
@@ -339,42 +339,8 @@ fn check_yield(found: f64) -> Result<(), ModelError> {
     if (0.0..=1.0).contains(&found) { Ok(()) } else { Err(ModelError::QuantumYield { found }) }
 }
 
-/// A word that names none of the choices.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("unknown {what} {found:?}, expected {expected}")]
-pub struct UnknownChoice {
-    /// What is chosen.
-    pub what: &'static str,
-    /// The word given.
-    pub found: String,
-    /// The words there are.
-    pub expected: &'static str,
-}
-
-macro_rules! named_choices {
-    ($choice:ident, $what:literal, $expected:literal, $($variant:ident = $name:literal),+) => {
-        impl fmt::Display for $choice {
-            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str(match self { $(Self::$variant => $name),+ })
-            }
-        }
-
-        impl FromStr for $choice {
-            type Err = UnknownChoice;
-
-            fn from_str(name: &str) -> Result<Self, Self::Err> {
-                match name {
-                    $($name => Ok(Self::$variant),)+
-                    _ => Err(UnknownChoice { what: $what, found: name.into(), expected: $expected }),
-                }
-            }
-        }
-    };
-}
-pub(crate) use named_choices;
-
-named_choices!(Accounting, "accounting", "energy or photon", Energy = "energy", Photon = "photon");
-named_choices!(Mixing, "mixing", "pooled or separate", Pooled = "pooled", Separate = "separate");
+choices!(Accounting, "accounting", Energy = "energy", Photon = "photon");
+choices!(Mixing, "mixing", Pooled = "pooled", Separate = "separate");
 
 #[cfg(feature = "serde")]
 impl serde::Serialize for QuantumYield {
@@ -399,7 +365,7 @@ impl FromStr for QuantumYield {
         let unknown = || UnknownChoice {
             what: "quantum yield",
             found: text.into(),
-            expected: "measured or a number from 0 to 1",
+            expected: "measured or a number from 0 to 1".into(),
         };
         match text {
             "measured" => Ok(Self::Measured),

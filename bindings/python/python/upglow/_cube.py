@@ -114,10 +114,11 @@ def build(
     metric
         Color difference to minimize: ``de2000``, ``de76`` or ``rgb``.
     method
-        ``search`` (ours), ``exhaustive`` (slower, its yardstick), ``seed`` or ``seed-features``.
+        ``search`` (ours), ``exhaustive`` (slower, its yardstick), ``konig2020`` or
+        ``konig2020-features``.
     sweeps
         How often a node that missed its color tries its neighbors' materials; by default 2, and 4
-        for the seed's methods.
+        for those of König et al. 2020.
     threads
         Threads; one for each core by default. The cube does not depend on it.
     progress

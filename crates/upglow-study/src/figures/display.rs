@@ -1,9 +1,6 @@
 //! From colors of the cube to colors of the page.
 
-use std::fmt;
-use std::str::FromStr;
-
-use upglow_color::{Colorimetry, Contract, LinearRgb, Matrix3, RgbSpace, srgb_encoded};
+use upglow_color::{Colorimetry, Contract, LinearRgb, Matrix3, RgbSpace, choices, srgb_encoded};
 
 use crate::svg::byte;
 
@@ -18,33 +15,7 @@ pub enum Display {
     Correct,
 }
 
-/// A word that names no way to show colors.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("unknown display {found:?}, expected as-srgb or correct")]
-pub struct UnknownDisplay {
-    /// The word given.
-    pub found: String,
-}
-
-impl fmt::Display for Display {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::AsSrgb => "as-srgb",
-            Self::Correct => "correct",
-        })
-    }
-}
-
-impl FromStr for Display {
-    type Err = UnknownDisplay;
-
-    fn from_str(name: &str) -> Result<Self, Self::Err> {
-        [Self::AsSrgb, Self::Correct]
-            .into_iter()
-            .find(|display| display.to_string() == name)
-            .ok_or_else(|| UnknownDisplay { found: name.into() })
-    }
-}
+choices!(Display, "display", AsSrgb = "as-srgb", Correct = "correct");
 
 impl Display {
     /// What a caption says about it.

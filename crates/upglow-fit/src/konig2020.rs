@@ -1,5 +1,5 @@
-//! The seed paper's way to the material of a color: from gray, then from the neighbors, through
-//! all pairs of dyes.
+//! The way of König et al. 2020 to the material of a color: from gray, then from the neighbors,
+//! through all pairs of dyes.
 //!
 //! What the paper leaves open is decided here: which unknowns start where, how the slope limit acts
 //! on coefficients, and that a color that reflectance shows gets no fluorescence.
@@ -7,13 +7,22 @@
 use upglow::{DyeModel, Edge, Fluorescence, Model, Sigmoid};
 use upglow_color::Metric;
 
+use crate::Fit;
 use crate::fitter::EXACT;
 use crate::job::{Job, Solve};
 use crate::parabola::MIDDLE_NM;
 use crate::problem::{LimitedProblem, Shape};
 use crate::solver::{Residuals, SolverOptions, Summary, solve};
 use crate::starts::Start;
-use crate::{Fit, Parameters};
+
+/// What the solver moves for a reflectance.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Parameters {
+    /// c0, c1, c2; the slope limit is a penalty.
+    Coefficients,
+    /// Shift, width, slope; the slope limit is a bound.
+    Features,
+}
 
 /// Where fluorescence starts: half strength, half of each dye, the middle of the bells' ranges.
 const START_CONCENTRATION: f64 = 0.5;
@@ -28,19 +37,24 @@ const STEPS: usize = 40;
 
 impl Job<'_> {
     /// The first material, from a gray start.
-    pub(crate) fn seed_first(&self, parameters: Parameters) -> Fit {
-        let passive = self.seed_passive(parameters);
+    pub(crate) fn konig2020_first(&self, parameters: Parameters) -> Fit {
+        let passive = self.konig2020_passive(parameters);
         if passive.de2000 <= EXACT {
             return passive;
         }
-        self.seed_variants(parameters, passive, passive)
+        self.konig2020_variants(parameters, passive, passive)
     }
 
     /// The best of `known` and what `known` and the neighbors lead to.
-    pub(crate) fn seed_again(&self, parameters: Parameters, known: Fit, neighbors: &[Fit]) -> Fit {
+    pub(crate) fn konig2020_again(
+        &self,
+        parameters: Parameters,
+        known: Fit,
+        neighbors: &[Fit],
+    ) -> Fit {
         let mut best = known;
         for start in [known].iter().chain(neighbors) {
-            best = self.seed_variants(parameters, *start, best);
+            best = self.konig2020_variants(parameters, *start, best);
             if best.de2000 <= EXACT {
                 break;
             }
@@ -49,7 +63,7 @@ impl Job<'_> {
     }
 
     /// Reflectance alone. CIEDE2000 has no slope to follow at gray: there CIELAB goes first.
-    fn seed_passive(&self, parameters: Parameters) -> Fit {
+    fn konig2020_passive(&self, parameters: Parameters) -> Fit {
         let gray = Sigmoid::flat(0.5).to_edge(MIDDLE_NM);
         let slope_per_nm = self.fitter.slope_limit_per_nm / 2.0;
         let starts = match parameters {
@@ -61,18 +75,18 @@ impl Job<'_> {
         let begin = Self { goal: self.goal.under(Metric::De76), ..*self };
         let fits = starts.into_iter().map(|reflectance| {
             let start = Start { reflectance, fluorescence: Fluorescence::None };
-            let begun = begin.seed_follow(parameters, start);
-            self.seed_follow(parameters, Start::from(begun))
+            let begun = begin.konig2020_follow(parameters, start);
+            self.konig2020_follow(parameters, Start::from(begun))
         });
         fits.min_by(|a, b| a.distance.total_cmp(&b.distance)).expect("there is a start")
     }
 
     /// The best of `known` and of what `from` leads to, with each pair of dyes.
-    fn seed_variants(&self, parameters: Parameters, from: Fit, known: Fit) -> Fit {
+    fn konig2020_variants(&self, parameters: Parameters, from: Fit, known: Fit) -> Fit {
         let mut best = known;
         for fluorescence in variants(self.fitter.model.model(), from.fluorescence) {
             let start = Start { reflectance: from.reflectance, fluorescence };
-            let found = self.seed_follow(parameters, start);
+            let found = self.konig2020_follow(parameters, start);
             if found.distance < best.distance {
                 best = found;
             }
@@ -83,7 +97,7 @@ impl Job<'_> {
         best
     }
 
-    fn seed_follow(&self, parameters: Parameters, start: Start) -> Fit {
+    fn konig2020_follow(&self, parameters: Parameters, start: Start) -> Fit {
         let slope_limit_per_nm = self.fitter.slope_limit_per_nm;
         match parameters {
             Parameters::Coefficients => {
