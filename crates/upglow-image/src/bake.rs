@@ -1,9 +1,11 @@
 //! Turns pictures into spectral files.
 
-pub(crate) mod attributes;
+mod attributes;
 mod compact;
-pub(crate) mod material;
+mod material;
+pub(crate) mod material_picture;
 mod radiance;
+pub(crate) mod repair;
 mod spectral;
 
 use std::fmt::Debug;
@@ -18,10 +20,14 @@ use self::compact::CompactMaker;
 use self::material::MaterialMaker;
 use self::radiance::RadianceMaker;
 use self::spectral::SpectralMaker;
-use crate::{
-    Assumed, Attributes, Band, CompactError, Compression, ExrDescription, ExrWriter, LinearPicture,
-    LinearPictureError, Picture, PictureError, Repair, Sample, WriteExrError, greatest_value,
-};
+use crate::bake::repair::{Repair, greatest_value};
+use crate::exr::attribute::Attributes;
+use crate::exr::header::Sample;
+use crate::exr::writer::{Compression, ExrDescription, ExrWriter, WriteExrError};
+use crate::picture::band::Band;
+use crate::picture::linear::{Assumed, LinearPicture, LinearPictureError};
+use crate::picture::{Picture, PictureError};
+use crate::spectral::compact::CompactError;
 
 /// What becomes of each texel.
 #[derive(Clone, Debug, PartialEq)]

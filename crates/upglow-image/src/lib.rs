@@ -32,55 +32,39 @@
 //!
 //! Out of scope: finding materials, colors under a light, and any other format.
 
-mod attribute_spectrum;
 mod bake;
-mod band;
 mod check;
-mod chromaticities;
-mod compact;
-mod encoding;
 mod example_pictures;
-mod exr_attribute;
-mod exr_blocks;
-mod exr_error;
-mod exr_header;
-mod exr_reader;
-mod exr_writer;
-mod linear_picture;
-mod lint;
-mod lint_pixels;
-mod material_picture;
+mod exr;
 mod picture;
-mod repair;
 mod rounding;
-mod spectral_layout;
-mod spectral_picture;
+mod spectral;
 
+pub use bake::material_picture::{MaterialPicture, MaterialPictureError};
+pub use bake::repair::{Repair, Repaired, Repairer, greatest_value};
 pub use bake::{BakeError, BakeOptions, Baked, Baker, Form, MaterialWay, baked_form};
-pub use band::Band;
 pub use check::{
     CheckError, CheckReport, CheckedPicture, Checker, Counts, CubeOpinion, Flaw, Judge, JudgeError,
     Located, Raster, WorstTexel, check_page,
 };
-pub use chromaticities::chromaticities;
-pub use compact::{
-    CompactDye, CompactError, CompactForm, CompactLayout, Donaldson, MOST_EXTRA_CHANNELS,
-};
-pub use encoding::Encoding;
 pub use example_pictures::{EXAMPLE_PICTURES, ExamplePicture};
-pub use exr_attribute::{Attribute, Attributes};
-pub use exr_blocks::is_unpacking;
-pub use exr_error::ExrError;
-pub use exr_header::{Channel, Sample, Window};
-pub use exr_reader::ExrReader;
-pub use exr_writer::{Compression, ExrDescription, ExrWriter, WriteExrError};
-pub use linear_picture::{Assumed, LinearPicture, LinearPictureError};
-pub use lint::{Depth, Finding, Lint, Rule, Severity, lint};
-pub use material_picture::{MaterialPicture, MaterialPictureError};
+pub use exr::attribute::{Attribute, Attributes};
+pub use exr::error::ExrError;
+pub use exr::header::{Channel, Sample, Window};
+pub use exr::is_unpacking;
+pub use exr::reader::ExrReader;
+pub use exr::writer::{Compression, ExrDescription, ExrWriter, WriteExrError};
+pub use picture::band::Band;
+pub use picture::chromaticities::chromaticities;
+pub use picture::encoding::Encoding;
+pub use picture::linear::{Assumed, LinearPicture, LinearPictureError};
 pub use picture::{Alpha, Picture, PictureError};
-pub use repair::{Repair, Repaired, Repairer, greatest_value};
-pub use spectral_layout::{
+pub use spectral::channel::{
     BISPECTRAL_UNIT, BispectralUnit, EMISSIVE_UNITS, LAYOUT_VERSION, LAYOUT_VERSION_VALUE,
     SpectralChannel, SpectralNameError,
 };
-pub use spectral_picture::{Reradiation, SpectralPicture, SpectralPictureError, SpectralTexel};
+pub use spectral::compact::{
+    CompactDye, CompactError, CompactForm, CompactLayout, Donaldson, MOST_EXTRA_CHANNELS,
+};
+pub use spectral::lint::{Depth, Finding, Lint, Rule, Severity, lint};
+pub use spectral::picture::{Reradiation, SpectralPicture, SpectralPictureError, SpectralTexel};

@@ -1,6 +1,10 @@
 //! Pictures of three formats, read by bands of rows.
 
+pub(crate) mod band;
+pub(crate) mod chromaticities;
+pub(crate) mod encoding;
 mod exr;
+pub(crate) mod linear;
 mod png;
 mod tiff;
 
@@ -13,8 +17,11 @@ use upglow_color::RgbSpace;
 use self::exr::ExrPicture;
 use self::png::PngPicture;
 use self::tiff::TiffPicture;
-use crate::exr_header::MAX_SIDE;
-use crate::{Band, Encoding, ExrError, Window};
+use crate::exr::error::ExrError;
+use crate::exr::header::MAX_SIDE;
+use crate::exr::header::Window;
+use crate::picture::band::Band;
+use crate::picture::encoding::Encoding;
 
 /// Why a picture cannot be read.
 #[derive(Debug, thiserror::Error)]

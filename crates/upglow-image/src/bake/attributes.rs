@@ -2,7 +2,8 @@
 
 use upglow::{Cube, Node};
 
-use crate::{Attribute, Attributes, chromaticities};
+use crate::exr::attribute::{Attribute, Attributes};
+use crate::picture::chromaticities::chromaticities;
 
 /// The header of the cube as JSON: contract, model, fit.
 pub(crate) const HEADER: &str = "upglow.header";

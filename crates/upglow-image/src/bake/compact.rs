@@ -7,10 +7,11 @@ use upglow_fit::Polisher;
 use super::radiance::RadianceMaker;
 use super::spectral::PREVIEW;
 use super::{BakeError, Maker, attributes};
-use crate::{
-    Attribute, Attributes, CompactForm, CompactLayout, Compression, LAYOUT_VERSION,
-    LAYOUT_VERSION_VALUE, MOST_EXTRA_CHANNELS, Sample,
-};
+use crate::exr::attribute::{Attribute, Attributes};
+use crate::exr::header::Sample;
+use crate::exr::writer::Compression;
+use crate::spectral::channel::{LAYOUT_VERSION, LAYOUT_VERSION_VALUE};
+use crate::spectral::compact::{CompactForm, CompactLayout, MOST_EXTRA_CHANNELS};
 
 /// The channels of [`CompactLayout`] beside a preview.
 #[derive(Debug)]

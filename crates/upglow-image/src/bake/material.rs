@@ -5,7 +5,9 @@ use upglow::{Cube, Model, Node};
 use upglow_fit::{FitOptionsError, Polisher};
 
 use super::{Maker, MaterialWay, attributes};
-use crate::{Attribute, Attributes, Compression, Sample};
+use crate::exr::attribute::{Attribute, Attributes};
+use crate::exr::header::Sample;
+use crate::exr::writer::Compression;
 
 /// Three numbers of the reflectance and, where the model fluoresces, three of that.
 #[derive(Debug)]

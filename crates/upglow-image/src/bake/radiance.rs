@@ -4,8 +4,9 @@ use upglow::{ColorTable, Cube};
 use upglow_color::{Grid, Illuminant, Matrix3};
 
 use super::{Maker, attributes};
+use crate::exr::attribute::{Attribute, Attributes};
+use crate::exr::writer::Compression;
 use crate::rounding::to_single;
-use crate::{Attribute, Attributes, Compression};
 
 /// Linear RGB, in the cube's space, of the blend of each texel under a light.
 #[derive(Debug)]

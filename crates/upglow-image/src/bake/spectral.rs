@@ -5,10 +5,11 @@ use upglow_color::{Grid, LinearRgb};
 
 use super::radiance::RadianceMaker;
 use super::{Maker, attributes};
+use crate::exr::attribute::{Attribute, Attributes};
+use crate::exr::writer::Compression;
 use crate::rounding::to_single;
-use crate::{
-    Attribute, Attributes, BISPECTRAL_UNIT, BispectralUnit, Compression, LAYOUT_VERSION,
-    LAYOUT_VERSION_VALUE, SpectralChannel,
+use crate::spectral::channel::{
+    BISPECTRAL_UNIT, BispectralUnit, LAYOUT_VERSION, LAYOUT_VERSION_VALUE, SpectralChannel,
 };
 
 /// The blend of each texel, one channel for each band and each pair of bands that rises.

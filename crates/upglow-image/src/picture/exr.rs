@@ -6,9 +6,11 @@ use std::path::Path;
 use upglow_color::RgbSpace;
 
 use super::{Alpha, Facts, PictureError, Pixels};
-use crate::chromaticities::space_of_singles;
-use crate::exr_header::{Channel, Header};
-use crate::{Attribute, Encoding, ExrReader};
+use crate::exr::attribute::Attribute;
+use crate::exr::header::{Channel, Header};
+use crate::exr::reader::ExrReader;
+use crate::picture::chromaticities::space_of_singles;
+use crate::picture::encoding::Encoding;
 
 #[derive(Debug)]
 pub(super) struct ExrPicture {

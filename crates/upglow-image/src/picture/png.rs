@@ -12,8 +12,8 @@ use png::{
 use upglow_color::RgbSpace;
 
 use super::{Alpha, Facts, PictureError, Pixels, check_memory, check_size, pixels};
-use crate::Encoding;
-use crate::chromaticities::space;
+use crate::picture::chromaticities::space;
+use crate::picture::encoding::Encoding;
 
 pub(super) struct PngPicture {
     reader: Reader<BufReader<File>>,

@@ -12,8 +12,8 @@ use tiff::tags::Tag;
 use upglow_color::RgbSpace;
 
 use super::{Alpha, Facts, MAX_AT_ONCE, PictureError, Pixels, check_memory, check_size, pixels};
-use crate::Encoding;
-use crate::chromaticities::space;
+use crate::picture::chromaticities::space;
+use crate::picture::encoding::Encoding;
 
 #[derive(Debug)]
 pub(super) struct TiffPicture {

@@ -5,9 +5,10 @@
 use upglow::{Accounting, DyeModel, Fluorescence, Mixing, Mixture};
 use upglow_color::Grid;
 
-use crate::attribute_spectrum::{parse_spectrum, print_spectrum};
+use crate::exr::attribute::{Attribute, Attributes};
 use crate::rounding::to_single;
-use crate::{Attribute, Attributes, SpectralChannel};
+use crate::spectral::attribute_spectrum::{parse_spectrum, print_spectrum};
+use crate::spectral::channel::SpectralChannel;
 
 /// What the maps beside the reflectances hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -7,7 +7,8 @@ use upglow_color::Contract;
 
 use crate::bake::attributes::{MODEL, read_model};
 use crate::bake::material::{BELLS, DYES, REFLECTANCE, node_of};
-use crate::{ExrError, ExrReader};
+use crate::exr::error::ExrError;
+use crate::exr::reader::ExrReader;
 
 /// Why a file gives no materials.
 #[derive(Debug, thiserror::Error)]

@@ -7,8 +7,8 @@ use half::f16;
 use rayon::prelude::*;
 use upglow::{Aside, AsideError};
 
-use crate::exr_attribute::Attributes;
-use crate::exr_header::{Channel, MAX_SIDE, Packing, Sample, Window, is_name, is_reserved, print};
+use crate::exr::attribute::Attributes;
+use crate::exr::header::{Channel, MAX_SIDE, Packing, Sample, Window, is_name, is_reserved, print};
 
 /// How blocks of rows are packed; all are without loss.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

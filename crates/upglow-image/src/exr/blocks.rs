@@ -11,7 +11,7 @@ use exr::meta::attribute::{
 use exr::meta::header::Header as UnpackHeader;
 use half::slice::HalfFloatSliceExt;
 
-use crate::exr_header::{Header, Packing, Sample};
+use crate::exr::header::{Channel, Header, Packing, Sample};
 
 thread_local! {
     static UNPACKING: Cell<bool> = const { Cell::new(false) };
@@ -93,7 +93,7 @@ pub(crate) struct Unpacker {
 
 impl Unpacker {
     pub(crate) fn new(header: &Header) -> Self {
-        let channel = |c: &crate::exr_header::Channel| ChannelDescription {
+        let channel = |c: &Channel| ChannelDescription {
             // DWA packs a channel by its name.
             name: Text::new_or_none(&c.name).unwrap_or_default(),
             sample_type: match c.sample {

@@ -7,10 +7,10 @@ use std::path::Path;
 
 use rayon::prelude::*;
 
-use crate::exr_attribute::Attributes;
-use crate::exr_blocks::{Block, Blocks, MAX_BLOCK_BYTES, Unpacker, decode, pixel_bytes};
-use crate::exr_error::ExrError;
-use crate::exr_header::{Channel, Header, Headers, Window};
+use crate::exr::attribute::Attributes;
+use crate::exr::blocks::{Block, Blocks, MAX_BLOCK_BYTES, Unpacker, decode, pixel_bytes};
+use crate::exr::error::ExrError;
+use crate::exr::header::{Channel, Header, Headers, Sample, Window};
 
 /// One image of an OpenEXR file, opened for reading.
 ///
@@ -300,7 +300,7 @@ fn table_length(part: &Header, multi_part: bool) -> Result<u64, ExrError> {
 struct Placed {
     /// Bytes of one pixel in the channels before it.
     before: usize,
-    sample: crate::exr_header::Sample,
+    sample: Sample,
     /// Bytes of one pixel in all channels.
     pixel: usize,
 }

@@ -5,8 +5,10 @@ use std::path::Path;
 use rayon::prelude::*;
 use upglow_color::{Contract, Grid, Matrix3, RgbSpace};
 
+use crate::picture::band::Band;
+use crate::picture::encoding::Encoding;
+use crate::picture::{Alpha, Picture, PictureError};
 use crate::rounding::to_single;
-use crate::{Alpha, Band, Encoding, Picture, PictureError};
 
 /// What is taken for granted of files that do not say it themselves.
 #[derive(Clone, Debug, Default, PartialEq)]

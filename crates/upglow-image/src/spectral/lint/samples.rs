@@ -1,8 +1,10 @@
 //! What a linter finds in the samples of a spectral file.
 
-use crate::exr_header::Sample;
-use crate::lint::{Found, Lint, Rule, band, bands_nm};
-use crate::{BISPECTRAL_UNIT, BispectralUnit, ExrError, ExrReader, SpectralChannel};
+use crate::exr::error::ExrError;
+use crate::exr::header::Sample;
+use crate::exr::reader::ExrReader;
+use crate::spectral::channel::{BISPECTRAL_UNIT, BispectralUnit, SpectralChannel};
+use crate::spectral::lint::{Found, Lint, Rule, band, bands_nm};
 
 /// Rounding to half precision: 2⁻¹² of each sample; twice that where samples are added up.
 const HALF_SLACK: f64 = 5e-4;

@@ -1,15 +1,19 @@
 //! Whether a file is a well-formed spectral or bispectral OpenEXR file, and what is wrong.
 
+mod samples;
+
 use std::fmt;
 use std::path::Path;
 
-use crate::compact::CompactLayout;
-use crate::exr_header::Sample;
-use crate::lint_pixels::check_pixels;
-use crate::{
-    BISPECTRAL_UNIT, BispectralUnit, EMISSIVE_UNITS, ExrError, ExrReader, LAYOUT_VERSION,
-    LAYOUT_VERSION_VALUE, SpectralChannel, SpectralNameError,
+use self::samples::check_pixels;
+use crate::exr::error::ExrError;
+use crate::exr::header::Sample;
+use crate::exr::reader::ExrReader;
+use crate::spectral::channel::{
+    BISPECTRAL_UNIT, BispectralUnit, EMISSIVE_UNITS, LAYOUT_VERSION, LAYOUT_VERSION_VALUE,
+    SpectralChannel, SpectralNameError,
 };
+use crate::spectral::compact::CompactLayout;
 
 /// How bad a finding is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -2,8 +2,10 @@
 
 use std::path::Path;
 
-use crate::compact::{CompactError, CompactLayout};
-use crate::{BISPECTRAL_UNIT, BispectralUnit, ExrError, ExrReader, SpectralChannel};
+use crate::exr::error::ExrError;
+use crate::exr::reader::ExrReader;
+use crate::spectral::channel::{BISPECTRAL_UNIT, BispectralUnit, SpectralChannel};
+use crate::spectral::compact::{CompactError, CompactLayout};
 
 /// Why a spectral picture cannot be read.
 #[derive(Debug, thiserror::Error)]

@@ -5,8 +5,8 @@
 
 use std::io::Read;
 
-use crate::exr_attribute::{Attribute, Attributes};
-use crate::exr_error::ExrError;
+use crate::exr::attribute::{Attribute, Attributes};
+use crate::exr::error::ExrError;
 
 /// The first four bytes of every OpenEXR file.
 pub(crate) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];

@@ -1,0 +1,10 @@
+//! OpenEXR images: headers, blocks of pixels, a reader by regions and a writer by bands of rows.
+
+pub(crate) mod attribute;
+mod blocks;
+pub(crate) mod error;
+pub(crate) mod header;
+pub(crate) mod reader;
+pub(crate) mod writer;
+
+pub use blocks::is_unpacking;

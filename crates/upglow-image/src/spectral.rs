@@ -1,0 +1,7 @@
+//! The spectral layout of OpenEXR: channel names, the compact form, texels, and a linter.
+
+mod attribute_spectrum;
+pub(crate) mod channel;
+pub(crate) mod compact;
+pub(crate) mod lint;
+pub(crate) mod picture;
