@@ -166,7 +166,7 @@ fn in_rust(bencher: Bencher, kind: Kind) {
     let nm = [420.0, 500.0, 580.0, 660.0];
     bencher.counter(ItemsCount::new(CALLS)).bench_local(|| {
         for rgb in &colors {
-            black_box(table.blend(*rgb).map(|blend| blend.reflectance4(black_box(nm)))).ok();
+            black_box(table.lookup(*rgb).map(|mixture| mixture.reflectance4(black_box(nm)))).ok();
         }
     });
 }

@@ -2,7 +2,7 @@
 
 use std::mem::MaybeUninit;
 
-use upglow::Blend;
+use upglow::{Bispectral, PackedMixture};
 
 use crate::cube::UpglowCube;
 use crate::failure::{Failure, UpglowStatus, guarded};
@@ -25,7 +25,7 @@ pub struct UpglowMaterial {
 #[derive(Clone, Copy, Debug)]
 struct Filled<'c> {
     mark: u64,
-    blend: Blend<'c>,
+    blend: PackedMixture<'c>,
 }
 
 /// Says that a material is filled: neither zeros nor numbers that memory is likely to hold.
@@ -45,7 +45,7 @@ const _: () = shared_by_threads::<Filled<'_>>();
 #[inline(always)]
 pub(crate) unsafe fn looked_up<'c>(
     material: *const UpglowMaterial,
-) -> Result<&'c Blend<'c>, Failure> {
+) -> Result<&'c PackedMixture<'c>, Failure> {
     // SAFETY: the caller promises that it is null or a material.
     let material: *const UpglowMaterial = unsafe { borrowed(material, "material")? };
     // SAFETY: a material has room for `Filled`, whose first word is zero or the mark.
@@ -79,7 +79,7 @@ pub unsafe extern "C" fn upglow_look_up(
         let (cube, rgb) = unsafe { (borrowed(cube, "cube")?, array(rgb, "rgb")?) };
         // SAFETY: the same; a material has room for `Filled`, and its alignment.
         let output = unsafe { Output::new(material, "material")?.narrowed::<Filled<'_>>() };
-        output.write(Filled { mark: MARK, blend: cube.table.blend(rgb)? });
+        output.write(Filled { mark: MARK, blend: cube.table.lookup(rgb)? });
         Ok(())
     })
 }
@@ -116,7 +116,7 @@ pub unsafe extern "C" fn upglow_look_up_many(
         };
         let mut absent = 0;
         for (rgb, material) in rgb.iter().zip(materials) {
-            match cube.table.blend(*rgb) {
+            match cube.table.lookup(*rgb) {
                 Ok(blend) => material.fill(blend),
                 Err(_) => {
                     *material = UpglowMaterial::EMPTY;
@@ -133,7 +133,7 @@ impl UpglowMaterial {
     /// One that every function refuses.
     const EMPTY: Self = Self { words: [MaybeUninit::new(0); 32] };
 
-    fn fill(&mut self, blend: Blend<'_>) {
+    fn fill(&mut self, blend: PackedMixture<'_>) {
         let filled: *mut Filled<'_> = std::ptr::from_mut(self).cast();
         // SAFETY: a material has room for `Filled`, and its alignment.
         unsafe { filled.write(Filled { mark: MARK, blend }) };
@@ -149,7 +149,7 @@ impl UpglowMaterial {
 pub(crate) unsafe fn answer<T>(
     material: *const UpglowMaterial,
     (place, name): (*mut T, &'static str),
-    ask: impl FnOnce(&Blend<'_>) -> T,
+    ask: impl FnOnce(&PackedMixture<'_>) -> T,
 ) -> UpglowStatus {
     guarded(|| {
         // SAFETY: the caller keeps this function's promise.
@@ -170,7 +170,7 @@ pub(crate) unsafe fn answer_to<const N: usize, T>(
     material: *const UpglowMaterial,
     (values, values_name): (*const f32, &'static str),
     (place, name): (*mut T, &'static str),
-    ask: impl FnOnce(&Blend<'_>, [f32; N]) -> T,
+    ask: impl FnOnce(&PackedMixture<'_>, [f32; N]) -> T,
 ) -> UpglowStatus {
     guarded(|| {
         // SAFETY: the caller keeps this function's promise.

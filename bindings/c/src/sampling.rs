@@ -1,6 +1,6 @@
 //! Wavelengths drawn from a material, and how likely they were.
 
-use upglow::{Draw, Sample};
+use upglow::{Bispectral, Draw, Sample};
 
 use crate::failure::UpglowStatus;
 use crate::material::{UpglowMaterial, answer, answer_to};

@@ -11,7 +11,6 @@ mod color;
 mod contract;
 mod cube;
 mod errors;
-mod evaluate;
 mod figures;
 mod fit;
 mod illuminant;

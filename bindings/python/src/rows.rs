@@ -5,12 +5,11 @@ use numpy::{
 };
 use pyo3::prelude::*;
 use rayon::prelude::*;
-use upglow::{Blend, LookupError, LookupTable, Mixture, Model, Node};
+use upglow::{Bispectral, LookupError, LookupTable, Mixture, Model, Node, PackedMixture};
 use upglow_color::{LinearRgb, Xyz};
 use upglow_fit::{ColorError, Fitter};
 
 use crate::errors::value_error;
-use crate::evaluate::Evaluate;
 use crate::threads::on_threads;
 
 /// Single or double precision: what the numbers of an array ask for.
@@ -55,7 +54,7 @@ pub(crate) enum Subjects<'py> {
 /// Materials, one a row.
 pub(crate) trait Rows: Sync {
     type Number: Number;
-    type Material: Evaluate<Self::Number>;
+    type Material: Bispectral<Real = Self::Number>;
 
     fn len(&self) -> usize;
 
@@ -87,14 +86,14 @@ impl<'r> Rows for Doubles<'r> {
 
 impl<'r> Rows for Singles<'r> {
     type Number = f32;
-    type Material = Blend<'r>;
+    type Material = PackedMixture<'r>;
 
     fn len(&self) -> usize {
         self.1.len()
     }
 
-    fn material(&self, row: usize) -> Option<Blend<'r>> {
-        self.0.blend(self.1[row]).ok()
+    fn material(&self, row: usize) -> Option<PackedMixture<'r>> {
+        self.0.lookup(self.1[row]).ok()
     }
 }
 

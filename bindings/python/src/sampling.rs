@@ -2,17 +2,26 @@
 
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
+use upglow::{Bispectral, Draw, Sample};
 
 use crate::cube::Cube;
 use crate::errors::value_error;
-use crate::evaluate::{Evaluate, Way, numbers_of};
 use crate::rows::{Number, Rows, Subjects, answers, check_count, with_rows};
 
-/// The way of this name.
-fn way(name: &str) -> PyResult<Way> {
+/// Which wavelength of light is drawn; the other one is known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Drawn {
+    /// That of incident light, for a path from the camera.
+    Incident,
+    /// That of the light that leaves, for a path from the light.
+    Outgoing,
+}
+
+/// The wavelength of this name.
+fn drawn_of(name: &str) -> PyResult<Drawn> {
     match name {
-        "incident" => Ok(Way::Incident),
-        "outgoing" => Ok(Way::Outgoing),
+        "incident" => Ok(Drawn::Incident),
+        "outgoing" => Ok(Drawn::Outgoing),
         _ => Err(value_error(format_args!("way {name:?}, expected incident or outgoing"))),
     }
 }
@@ -30,13 +39,18 @@ pub(crate) fn sample<'py>(
     u: PyReadonlyArray2<'py, f64>,
     threads: Option<usize>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let (way, known, u) = (way(drawn)?, known_nm.as_slice()?, u.as_slice()?.as_chunks::<2>().0);
+    let (drawn, known, u) =
+        (drawn_of(drawn)?, known_nm.as_slice()?, u.as_slice()?.as_chunks::<2>().0);
     with_rows!(cube, of, rows => {
         check_count("known wavelengths", known.len(), rows.len())?;
         check_count("pairs of random numbers", u.len(), rows.len())?;
         answers(py, &rows, 4, threads, |row, material, out| {
             let u = u[row].map(Number::from_double);
-            out.copy_from_slice(&numbers_of(material.sample(way, number(known[row]), u)));
+            let sample = match drawn {
+                Drawn::Incident => material.sample_incident(number(known[row]), u),
+                Drawn::Outgoing => material.sample_outgoing(number(known[row]), u),
+            };
+            out.copy_from_slice(&numbers_of(sample));
         })
     })
 }
@@ -53,12 +67,16 @@ pub(crate) fn pdf_per_nm<'py>(
     out_nm: PyReadonlyArray1<'py, f64>,
     threads: Option<usize>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let (way, from, to) = (way(drawn)?, in_nm.as_slice()?, out_nm.as_slice()?);
+    let (drawn, from, to) = (drawn_of(drawn)?, in_nm.as_slice()?, out_nm.as_slice()?);
     with_rows!(cube, of, rows => {
         check_count("in_nm", from.len(), rows.len())?;
         check_count("out_nm", to.len(), rows.len())?;
         answers(py, &rows, 1, threads, |row, material, out| {
-            out[0] = material.pdf_per_nm(way, number(from[row]), number(to[row]));
+            let (in_nm, out_nm) = (number(from[row]), number(to[row]));
+            out[0] = match drawn {
+                Drawn::Incident => material.incident_pdf_per_nm(in_nm, out_nm),
+                Drawn::Outgoing => material.outgoing_pdf_per_nm(in_nm, out_nm),
+            };
         })
     })
 }
@@ -74,13 +92,30 @@ pub(crate) fn elastic_probability<'py>(
     known_nm: PyReadonlyArray1<'py, f64>,
     threads: Option<usize>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let (way, known) = (way(drawn)?, known_nm.as_slice()?);
+    let (drawn, known) = (drawn_of(drawn)?, known_nm.as_slice()?);
     with_rows!(cube, of, rows => {
         check_count("known wavelengths", known.len(), rows.len())?;
         answers(py, &rows, 1, threads, |row, material, out| {
-            out[0] = material.elastic_probability(way, number(known[row]));
+            out[0] = match drawn {
+                Drawn::Incident => material.incident_elastic_probability(number(known[row])),
+                Drawn::Outgoing => material.outgoing_elastic_probability(number(known[row])),
+            };
         })
     })
+}
+
+/// Wavelength, throughput, probability or density, and 1 where the wavelength was kept.
+fn numbers_of<T: Number>(sample: Option<Sample<T>>) -> [T; 4] {
+    let [zero, one] = [0.0, 1.0].map(T::from_double);
+    match sample {
+        None => [T::NAN, zero, zero, zero],
+        Some(Sample { nm, throughput, draw: Draw::Elastic { probability } }) => {
+            [nm, throughput, probability, one]
+        }
+        Some(Sample { nm, throughput, draw: Draw::Fluorescent { per_nm } }) => {
+            [nm, throughput, per_nm, zero]
+        }
+    }
 }
 
 fn number<T: Number>(value: f64) -> T {

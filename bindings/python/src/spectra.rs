@@ -2,12 +2,11 @@
 
 use numpy::{PyArray2, PyReadonlyArray1};
 use pyo3::prelude::*;
-use upglow::Mixture;
+use upglow::{Bispectral, Mixture};
 use upglow_color::Grid;
 
 use crate::cube::Cube;
 use crate::errors::value_error;
-use crate::evaluate::Evaluate;
 use crate::materials::nodes;
 use crate::rows::{
     Doubles, Number, Rows, Stored, Subjects, answers, check_count, triples, with_rows,

@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use upglow::{Blend, DyeModel, DyeOptions, DyeSet, LookupTable, Model};
+use upglow::{Bispectral, DyeModel, DyeOptions, DyeSet, LookupTable, Model, PackedMixture};
 use upglow_color::Contract;
 use upglow_fit::{FitOptions, Unwatched, build_cube};
 
@@ -53,18 +53,18 @@ impl Random {
         380.0 + 340.0 * self.unit()
     }
 
-    fn blend(&mut self) -> Blend<'static> {
-        TABLE.blend([self.unit(), self.unit(), self.unit()]).expect("inside")
+    fn blend(&mut self) -> PackedMixture<'static> {
+        TABLE.lookup([self.unit(), self.unit(), self.unit()]).expect("inside")
     }
 }
 
 fn measure<R>(
     bencher: Bencher<'_, '_>,
     kind: Kind,
-    evaluate: impl Fn(&Blend<'_>, [f32; 8], [f32; 2]) -> R,
+    evaluate: impl Fn(&PackedMixture<'_>, [f32; 8], [f32; 2]) -> R,
 ) {
     let mut random = Random(1);
-    let wanted = |blend: &Blend<'_>| matches!(kind, Kind::All) || blend.is_fluorescent();
+    let wanted = |blend: &PackedMixture<'_>| matches!(kind, Kind::All) || blend.is_fluorescent();
     let blends: Vec<_> =
         std::iter::repeat_with(|| random.blend()).filter(wanted).take(MATERIALS).collect();
     let numbers: Vec<([f32; 8], [f32; 2])> = (0..CALLS)

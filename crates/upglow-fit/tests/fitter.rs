@@ -4,7 +4,8 @@
 
 use proptest::prelude::*;
 use upglow::{
-    Accounting, AnalyticModel, DyeModel, DyeOptions, DyeSet, Fluorescence, Mixing, Mixture, Model,
+    Accounting, AnalyticModel, Bispectral, DyeModel, DyeOptions, DyeSet, Fluorescence, Mixing,
+    Mixture, Model,
 };
 use upglow_color::{Choice, Contract, Grid, LinearRgb, Metric};
 use upglow_fit::{ColorError, Fit, FitOptions, Fitter};

@@ -1,6 +1,6 @@
 //! A cube's numbers as two textures of four floats a texel.
 
-use upglow::{Cube, DyeModel, Fluorescence, Material, Mixture, Model, Node, Sigmoid};
+use upglow::{Cube, DyeModel, Fluorescence, Material, Mixture, Model, Sigmoid};
 use upglow_color::{Grid, Spectrum};
 
 use crate::ShaderError;
@@ -31,9 +31,7 @@ impl Texture {
 
 /// The nodes: texel (2·red + part, blue·n + green) of n nodes along an axis.
 ///
-/// Part 0 is the edge (nm) and the coefficients of 1, d and d² at the distance d from it. Part 1 is,
-/// for dyes: the second's share, concentration, ∫ returned dλ (nm), the first's number; for bells:
-/// emission peak (nm), concentration, ∫ returned dλ (nm), absorption peak (nm).
+/// Part 0 is the reflectance of [`upglow::PackedNode`], part 1 its fluorescence.
 ///
 /// # Errors
 ///
@@ -43,24 +41,8 @@ pub(crate) fn nodes(cube: &Cube) -> Result<Texture, ShaderError> {
     if n * n > MOST_TEXELS {
         return Err(ShaderError::Resolution { found: n, most: MOST_TEXELS.isqrt() });
     }
-    let texels = cube.nodes().iter().flat_map(|node| {
-        [node.edge().bounded_parabola(), fluorescence(cube.model(), node)].map(single)
-    });
+    let texels = cube.packed_nodes().flat_map(|node| [node.reflectance, node.fluorescence]);
     Ok(Texture { width: 2 * n, texels: texels.collect() })
-}
-
-fn fluorescence(model: &Model, node: &Node) -> [f64; 4] {
-    let material = node.material(model);
-    let returned_nm = Mixture::of(model, material).returned_total_nm();
-    match material.fluorescence {
-        Fluorescence::None => [0.0; 4],
-        Fluorescence::Dyes { first, weight, concentration } => {
-            [weight, concentration, returned_nm, first as f64]
-        }
-        Fluorescence::Analytic { emission_peak_nm, stokes_shift_nm, concentration } => {
-            [emission_peak_nm, concentration, returned_nm, emission_peak_nm - stokes_shift_nm]
-        }
-    }
 }
 
 /// The curves of a ring of dyes: texel (2·dye + part, sample).

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use upglow::{
-    Accounting, AnalyticModel, Cube, Draw, DyeModel, DyeOptions, DyeSet, Edge, FitRecord,
-    Fluorescence, Interpolation, Mixing, Mixture, Model, Node, QuantumYield, Sample,
+    Accounting, AnalyticModel, Bispectral, Cube, Draw, DyeModel, DyeOptions, DyeSet, Edge,
+    FitRecord, Fluorescence, Interpolation, Mixing, Mixture, Model, Node, QuantumYield, Sample,
 };
 use upglow_color::{Contract, LinearRgb};
 use upglow_shader::{Language, Shader};

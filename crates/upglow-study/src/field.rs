@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use rayon::prelude::*;
-use upglow::{Cube, Mixture, ModelOnGrid};
+use upglow::{Bispectral, Cube, Mixture, ModelOnGrid};
 use upglow_color::{Grid, Lab, Xyz, ciede2000};
 
 use crate::spread::Spread;

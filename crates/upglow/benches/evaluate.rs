@@ -7,7 +7,7 @@ mod synthetic;
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use synthetic::{CALLS, Kind, Random, cube};
-use upglow::{Blend, LookupTable};
+use upglow::{Bispectral, LookupTable, PackedMixture};
 
 fn main() {
     divan::main();
@@ -17,15 +17,15 @@ const KINDS: [Kind; 3] = [Kind::Passive, Kind::Dyes, Kind::Bells];
 /// So few that they stay in the first-level cache: the look-up is another bench.
 const MATERIALS: usize = 64;
 
-fn blends(table: &LookupTable) -> Vec<Blend<'_>> {
+fn blends(table: &LookupTable) -> Vec<PackedMixture<'_>> {
     let mut random = Random(1);
-    (0..MATERIALS).map(|_| table.blend(random.rgb()).expect("inside")).collect()
+    (0..MATERIALS).map(|_| table.lookup(random.rgb()).expect("inside")).collect()
 }
 
 fn measure<const N: usize, R>(
     bencher: Bencher,
     kind: Kind,
-    evaluate: impl Fn(&Blend<'_>, [f32; N]) -> R,
+    evaluate: impl Fn(&PackedMixture<'_>, [f32; N]) -> R,
 ) {
     let table = cube(32, kind).lookup_table();
     let blends = blends(&table);

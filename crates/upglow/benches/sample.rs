@@ -7,7 +7,7 @@ mod synthetic;
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use synthetic::{CALLS, Kind, Random, cube};
-use upglow::Blend;
+use upglow::{Bispectral, PackedMixture};
 
 fn main() {
     divan::main();
@@ -16,11 +16,15 @@ fn main() {
 const KINDS: [Kind; 3] = [Kind::Passive, Kind::Dyes, Kind::Bells];
 const MATERIALS: usize = 64;
 
-fn measure<R>(bencher: Bencher, kind: Kind, draw: impl Fn(&Blend<'_>, [f32; 2], [f32; 2]) -> R) {
+fn measure<R>(
+    bencher: Bencher,
+    kind: Kind,
+    draw: impl Fn(&PackedMixture<'_>, [f32; 2], [f32; 2]) -> R,
+) {
     let table = cube(32, kind).lookup_table();
     let mut random = Random(1);
-    let blends: Vec<Blend<'_>> =
-        (0..MATERIALS).map(|_| table.blend(random.rgb()).expect("inside")).collect();
+    let blends: Vec<PackedMixture<'_>> =
+        (0..MATERIALS).map(|_| table.lookup(random.rgb()).expect("inside")).collect();
     let numbers: Vec<[[f32; 2]; 2]> = (0..CALLS)
         .map(|_| {
             let nm = [random.wavelength_nm(), random.wavelength_nm()];

@@ -4,8 +4,8 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x4, i32x4};
 use upglow_color::{Grid, Spectrum};
 
-use crate::blend::transposed;
 use crate::lookup_table::smaller_of;
+use crate::packed_mixture::transposed;
 use crate::quantile_table::QuantileTable;
 use crate::rounding::to_single;
 use crate::{DyeModel, Model};

@@ -2,21 +2,21 @@
 //!
 //! A [`Cube`] holds one [`Material`] for each node of a grid over RGB. A look-up mixes the four
 //! materials around a color into a [`Mixture`], without allocation, and a mixture answers what a
-//! renderer asks: [`Mixture::reflectance`], [`Mixture::reradiation_per_nm`], [`Mixture::albedo`].
+//! renderer asks through the trait [`Bispectral`].
 //!
 //! - reflectance: [`Sigmoid`], [`Vertex`], [`Features`], [`Edge`]
 //! - fluorescence: [`Model`], [`DyeSet`], [`DyeModel`], [`AnalyticModel`]
 //! - color: [`ModelOnGrid`], and [`ColorTable`] for whole images
 //! - cubes: [`Cube`], [`Interpolation`]; files are described in `docs/cube-format.md`
 //! - files that appear whole or not at all: [`Aside`], [`write_whole`]
-//! - sampling: [`Mixture::sample_incident`], [`Mixture::sample_outgoing`], [`Sample`]
-//! - inner loops: [`Cube::lookup_table`] gives a [`LookupTable`], whose [`Blend`] is a mixture in
-//!   single precision
+//! - evaluation and sampling: [`Bispectral`], [`Sample`]
+//! - inner loops: [`Cube::lookup_table`] gives a [`LookupTable`], which looks up a
+//!   [`PackedMixture`], a mixture in single precision; devices read [`Cube::packed_nodes`]
 //!
 //! # Examples
 //!
 //! ```
-//! use upglow::{Fluorescence, Material, Mixture, Model, Sigmoid};
+//! use upglow::{Bispectral, Fluorescence, Material, Mixture, Model, Sigmoid};
 //! use upglow::{DyeModel, DyeOptions, DyeSet};
 //!
 //! let dyes = DyeModel::new(DyeSet::named("seed8")?, DyeOptions::default())?;
@@ -35,8 +35,7 @@
 
 mod aside;
 mod batch;
-mod blend;
-mod blend_sampling;
+mod bispectral;
 mod bspline;
 mod coefficient_table;
 mod cube;
@@ -54,6 +53,9 @@ mod material;
 mod mixture;
 mod model;
 mod model_on_grid;
+mod packed_mixture;
+mod packed_node;
+mod packed_sampling;
 mod quantile_table;
 #[cfg(test)]
 mod random;
@@ -63,7 +65,7 @@ mod sigmoid;
 
 pub use aside::{Aside, AsideError, write_whole};
 pub use batch::{ColorTable, LengthError};
-pub use blend::Blend;
+pub use bispectral::Bispectral;
 pub use coefficient_table::{CoefficientTable, CoefficientTableError, Integrator};
 pub use cube::{Cube, CubeError, FitRecord, LookupError, Node, NodeError};
 pub use cube_file::{ReadCubeError, WriteCubeError};
@@ -79,5 +81,7 @@ pub use model::{
     QuantumYield,
 };
 pub use model_on_grid::{Emitted, ModelOnGrid};
+pub use packed_mixture::PackedMixture;
+pub use packed_node::PackedNode;
 pub use sampling::{Draw, Sample};
 pub use sigmoid::{Sigmoid, Vertex};

@@ -1,10 +1,10 @@
 //! A cube compiled for looking up millions of colors.
 
-use crate::blend::{Bells, Blend, with_baseline};
 use crate::curve_table::CurveTable;
-use crate::material::Lobe;
+use crate::packed_mixture::{Bells, PackedMixture, with_baseline};
+use crate::packed_node::PackedNode;
 use crate::rounding::to_single;
-use crate::{Cube, Edge, LookupError, Mixing, Model};
+use crate::{Cube, LookupError, Mixing, Model};
 use fearless_simd::{Level, dispatch};
 
 /// A [`Cube`] in single precision, packed so that a look-up touches as few cache lines as it can.
@@ -22,8 +22,8 @@ use fearless_simd::{Level, dispatch};
 /// let nodes = vec![Node::new(gray, Fluorescence::None, 0.0); 8];
 /// let cube = Cube::new(Contract::default(), Model::Reflectance, FitRecord::default(), 2, nodes)?;
 /// let table = cube.lookup_table();
-/// let blend = table.blend([0.2, 0.5, 0.1])?;
-/// assert_eq!(blend.reflectance4([400.0, 500.0, 600.0, 700.0]), [0.5; 4]);
+/// let mixture = table.lookup([0.2, 0.5, 0.1])?;
+/// assert_eq!(mixture.reflectance4([400.0, 500.0, 600.0, 700.0]), [0.5; 4]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -38,27 +38,6 @@ pub struct LookupTable {
     nodes: Vec<PackedNode>,
 }
 
-/// One material, half a cache line.
-#[derive(Clone, Copy, Debug, Default)]
-#[repr(C, align(32))]
-pub(crate) struct PackedNode {
-    /// The edge's wavelength (nm), and the coefficients of 1, d and d² at the distance d from it.
-    pub(crate) parabola: [f32; 4],
-    /// Dyes: weight of the second, concentration, ∫ returned dλ (nm), the first dye's number.
-    /// Bells: emission peak (nm), concentration, ∫ returned dλ (nm), absorption peak (nm).
-    pub(crate) fluorescence: [f32; 4],
-}
-
-/// Edges farther than this from all light, nm, are restated around [`CENTER_NM`]: distances from
-/// them would have no digits left.
-const FARTHEST_EDGE_NM: f64 = 1e5;
-const CENTER_NM: f64 = 550.0;
-
-/// Greatest coefficients of 1, d and d². Larger ones overflow when the parabola is squared at the
-/// greatest distances; smaller ones bend reflectances that rise within one step of a wavelength in
-/// single precision, 6e-5 nm.
-const GREATEST_COEFFICIENTS: [f64; 3] = [1e18, 1e12, 1e8];
-
 impl Cube {
     /// The cube compiled for looking up millions of colors.
     pub fn lookup_table(&self) -> LookupTable {
@@ -70,7 +49,7 @@ impl Cube {
             curves: CurveTable::new(self.model()),
             level: Level::new(),
             resolution: axis(self),
-            nodes: (0..self.nodes().len()).map(|index| PackedNode::new(self, index)).collect(),
+            nodes: self.packed_nodes().collect(),
         }
     }
 }
@@ -78,46 +57,6 @@ impl Cube {
 /// Nodes along each axis, for arithmetic with numbers of nodes, which are below 2²⁴.
 pub(crate) fn axis(cube: &Cube) -> u32 {
     u32::try_from(cube.resolution()).expect("a cube has at most 256 nodes along an axis")
-}
-
-impl PackedNode {
-    fn new(cube: &Cube, index: usize) -> Self {
-        let node = &cube.nodes()[index];
-        let parabola = node.edge().bounded_parabola();
-        let fluorescence = cube.node_material(index).fluorescence;
-        let returned_nm =
-            fluorescence.lobes(cube.model()).map(|lobe: Lobe<'_>| lobe.returned_total_nm()).sum();
-        let fluorescence = match fluorescence {
-            crate::Fluorescence::None => [0.0; 4],
-            crate::Fluorescence::Dyes { first, weight, concentration } => {
-                [weight, concentration, returned_nm, first as f64]
-            }
-            crate::Fluorescence::Analytic { emission_peak_nm, stokes_shift_nm, concentration } => {
-                let absorption_nm = emission_peak_nm - stokes_shift_nm;
-                [emission_peak_nm, concentration, returned_nm, absorption_nm]
-            }
-        };
-        Self { parabola: parabola.map(to_single), fluorescence: fluorescence.map(to_single) }
-    }
-}
-
-impl Edge {
-    /// The wavelength of the edge (nm) and the coefficients of 1, d and d² at the distance d from
-    /// it, for evaluation in single precision: an edge far from all light is restated around
-    /// 550 nm, coefficients that would overflow are bounded, and none is not a number.
-    pub fn bounded_parabola(self) -> [f64; 4] {
-        let ([mut constant, mut linear, quadratic], mut edge_nm) = (self.parabola(), self.edge_nm);
-        if edge_nm.abs() > FARTHEST_EDGE_NM {
-            let d = CENTER_NM - edge_nm;
-            constant += d * (linear + d * quadratic);
-            linear += 2.0 * d * quadratic;
-            edge_nm = CENTER_NM;
-        }
-        let [c, l, q] = GREATEST_COEFFICIENTS;
-        // `max` takes the number where the other is none.
-        let within = |value: f64, limit: f64| value.max(-limit).min(limit);
-        [edge_nm, within(constant, c), within(linear, l), within(quadratic, q)]
-    }
 }
 
 impl LookupTable {
@@ -137,10 +76,10 @@ impl LookupTable {
     ///
     /// [`LookupError::Outside`] if a component is not a number in 0..=1. Whoever wants the nearest
     /// color of the cube clamps first.
-    pub fn blend(&self, rgb: [f32; 3]) -> Result<Blend<'_>, LookupError> {
+    pub fn lookup(&self, rgb: [f32; 3]) -> Result<PackedMixture<'_>, LookupError> {
         let corners = Corners::around(self.resolution, rgb).ok_or_else(|| outside(rgb))?;
         let nodes = corners.nodes.map(|node| &self.nodes[node as usize]);
-        Ok(with_baseline!(simd => Blend::new(simd, self, corners.weights, nodes)))
+        Ok(with_baseline!(simd => PackedMixture::new(simd, self, corners.weights, nodes)))
     }
 
     /// Whether each of two dyes gives back only what it absorbed itself.
@@ -237,7 +176,7 @@ fn whole(position: f64) -> u32 {
 mod tests {
     use super::*;
     use crate::random::{Random, models};
-    use crate::{FitRecord, Interpolation};
+    use crate::{Bispectral, Edge, FitRecord, Interpolation};
     use proptest::prelude::*;
     use upglow_color::{Contract, LinearRgb};
 
@@ -276,7 +215,7 @@ mod tests {
             ([-0.25, 0.5, 0.5], "red is -0.25, expected 0 to 1, the range of the cube"),
             ([f32::INFINITY, 0.5, 0.5], "red is inf, expected 0 to 1, the range of the cube"),
         ] {
-            assert_eq!(table.blend(rgb).unwrap_err().to_string(), message);
+            assert_eq!(table.lookup(rgb).unwrap_err().to_string(), message);
         }
     }
 
@@ -294,7 +233,7 @@ mod tests {
             let table = cube.lookup_table();
             for _ in 0..2000 {
                 let rgb = [(); 3].map(|()| to_single(random.unit()));
-                let blend = table.blend(rgb).unwrap();
+                let blend = table.lookup(rgb).unwrap();
                 let mixture =
                     cube.lookup(LinearRgb(rgb.map(f64::from)), Interpolation::Blend).unwrap();
                 let nm = [(); 8].map(|()| to_single(random.between(290.0, 840.0)));
@@ -334,7 +273,7 @@ mod tests {
                 let rgb = [(); 3].map(|()| to_single(random.unit()));
                 let nm = [(); 8].map(|()| to_single(random.between(290.0, 840.0)));
                 let [wide, plain] = [&wide, &plain].map(|table| {
-                    let blend = table.blend(rgb).unwrap();
+                    let blend = table.lookup(rgb).unwrap();
                     let [a, b, c, d] = blend.reflectance4([nm[0], nm[2], nm[4], nm[6]]);
                     let [e, f, g, h, i, j, k, l] = blend.reflectance8(nm);
                     [a, b, c, d, e, f, g, h, i, j, k, l]
@@ -357,7 +296,7 @@ mod tests {
             let cube =
                 Cube::new(Contract::default(), model, FitRecord::default(), 2, vec![node; 8]);
             let table = cube.unwrap().lookup_table();
-            let blend = table.blend([0.5; 3]).unwrap();
+            let blend = table.lookup([0.5; 3]).unwrap();
             for nm in [300.0, 550.0, 830.0_f32] {
                 let error = f64::from(blend.reflectance(nm)) - node.edge().at(nm.into());
                 assert!(error.abs() < SINGLE, "{edge_nm} {nm} {error}");
@@ -379,7 +318,7 @@ mod tests {
         let table = cube.lookup_table();
         for _ in 0..1000 {
             let rgb = [(); 3].map(|()| to_single(random.unit()));
-            let blend = table.blend(rgb).unwrap();
+            let blend = table.lookup(rgb).unwrap();
             let eight =
                 blend.reflectance8([-1e30, 0.0, 300.0, 450.0, 550.0, 830.0, 1e30, f32::NAN]);
             for r in blend.reflectance4([300.0, 450.0, 550.0, 830.0]).into_iter().chain(eight) {

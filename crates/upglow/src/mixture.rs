@@ -2,7 +2,11 @@
 
 use upglow_color::{Grid, Xyz};
 
-use crate::{Material, Model, ModelOnGrid};
+use crate::bispectral::Bispectral;
+use crate::material::{Lobe, Material};
+use crate::model::Model;
+use crate::model_on_grid::ModelOnGrid;
+use crate::sampling::{Sample, ratio};
 
 /// A convex mixture of up to four materials of one model.
 ///
@@ -38,30 +42,6 @@ impl<'m> Mixture<'m> {
         self.parts.iter().copied().filter(|(weight, _)| *weight > 0.0)
     }
 
-    /// Share of incident light at `lambda_nm` that is reflected at the same wavelength, 0..=1:
-    /// (1 − c·a(λ))·r(λ).
-    pub fn reflectance(&self, lambda_nm: f64) -> f64 {
-        self.parts()
-            .map(|(weight, material)| {
-                let absorbed: f64 =
-                    material.fluorescence.lobes(self.model).map(|l| l.absorbed(lambda_nm)).sum();
-                weight * (1.0 - absorbed) * material.reflectance.at(lambda_nm)
-            })
-            .sum()
-    }
-
-    /// Energy that comes out per nm at `out_nm` by fluorescence, per unit that came in at `in_nm`;
-    /// 1/nm. Reflection at the same wavelength is [`Mixture::reflectance`].
-    pub fn reradiation_per_nm(&self, in_nm: f64, out_nm: f64) -> f64 {
-        self.lobes().map(|(w, lobe)| w * lobe.returned(in_nm) * lobe.emission(out_nm)).sum()
-    }
-
-    /// Share of incident light at `in_nm` that comes out at any wavelength, 0..=1.
-    pub fn albedo(&self, in_nm: f64) -> f64 {
-        let fluorescent: f64 = self.lobes().map(|(w, lobe)| w * lobe.returned(in_nm)).sum();
-        self.reflectance(in_nm) + fluorescent
-    }
-
     /// The integral, over all incident wavelengths, of what fluorescence gives back of them; nm.
     pub fn returned_total_nm(&self) -> f64 {
         self.lobes().map(|(w, lobe)| w * lobe.returned_total_nm()).sum()
@@ -71,7 +51,7 @@ impl<'m> Mixture<'m> {
     ///
     /// `[outgoing][incident]`: the share of the energy that comes in at the incident wavelength
     /// and leaves within half a step of the outgoing one. Each column adds up to at most 1, and to
-    /// [`Mixture::albedo`] where the grid holds the whole emission.
+    /// [`Bispectral::albedo`] where the grid holds the whole emission.
     pub fn reradiation_matrix(&self, grid: Grid) -> Vec<Vec<f64>> {
         let half = f64::from(grid.step_nm()) / 2.0;
         let mut matrix = vec![vec![0.0; grid.len()]; grid.len()];
@@ -99,15 +79,67 @@ impl<'m> Mixture<'m> {
         Xyz(sum)
     }
 
-    /// Whether any light comes back at another wavelength.
-    pub fn is_fluorescent(&self) -> bool {
-        self.parts().any(|(_, material)| material.fluorescence.concentration() > 0.0)
-    }
-
-    pub(crate) fn lobes(&self) -> impl Iterator<Item = (f64, crate::material::Lobe<'m>)> + '_ {
+    pub(crate) fn lobes(&self) -> impl Iterator<Item = (f64, Lobe<'m>)> + '_ {
         self.parts().flat_map(|(weight, material)| {
             material.fluorescence.lobes(self.model).map(move |lobe| (weight, lobe))
         })
+    }
+}
+
+impl Bispectral for Mixture<'_> {
+    type Real = f64;
+
+    fn is_fluorescent(&self) -> bool {
+        self.parts().any(|(_, material)| material.fluorescence.concentration() > 0.0)
+    }
+
+    fn reflectance(&self, lambda_nm: f64) -> f64 {
+        self.parts()
+            .map(|(weight, material)| {
+                let absorbed: f64 =
+                    material.fluorescence.lobes(self.model).map(|l| l.absorbed(lambda_nm)).sum();
+                weight * (1.0 - absorbed) * material.reflectance.at(lambda_nm)
+            })
+            .sum()
+    }
+
+    fn reradiation_per_nm(&self, in_nm: f64, out_nm: f64) -> f64 {
+        self.lobes().map(|(w, lobe)| w * lobe.returned(in_nm) * lobe.emission(out_nm)).sum()
+    }
+
+    fn albedo(&self, in_nm: f64) -> f64 {
+        let fluorescent: f64 = self.lobes().map(|(w, lobe)| w * lobe.returned(in_nm)).sum();
+        self.reflectance(in_nm) + fluorescent
+    }
+
+    fn sample_incident(&self, out_nm: f64, u: [f64; 2]) -> Option<Sample<f64>> {
+        self.shares_leaving(out_nm).sample(out_nm, u, |lobe, u| {
+            let in_nm = lobe.sample_absorbed(u);
+            (in_nm, self.reradiation_per_nm(in_nm, out_nm))
+        })
+    }
+
+    fn incident_pdf_per_nm(&self, in_nm: f64, out_nm: f64) -> f64 {
+        ratio(self.reradiation_per_nm(in_nm, out_nm), self.shares_leaving(out_nm).total())
+    }
+
+    fn incident_elastic_probability(&self, out_nm: f64) -> f64 {
+        self.shares_leaving(out_nm).elastic_probability()
+    }
+
+    fn sample_outgoing(&self, in_nm: f64, u: [f64; 2]) -> Option<Sample<f64>> {
+        self.shares_arriving(in_nm).sample(in_nm, u, |lobe, u| {
+            let out_nm = lobe.sample_emitted(u);
+            (out_nm, self.reradiation_per_nm(in_nm, out_nm))
+        })
+    }
+
+    fn outgoing_pdf_per_nm(&self, in_nm: f64, out_nm: f64) -> f64 {
+        ratio(self.reradiation_per_nm(in_nm, out_nm), self.shares_arriving(in_nm).total())
+    }
+
+    fn outgoing_elastic_probability(&self, in_nm: f64) -> f64 {
+        self.shares_arriving(in_nm).elastic_probability()
     }
 }
 

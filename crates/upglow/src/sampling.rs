@@ -15,8 +15,9 @@
 //! directions and of other strategies combine by multiple importance sampling; the delta combines
 //! with nothing.
 
-use crate::Mixture;
+use crate::bispectral::Bispectral;
 use crate::material::{Curves, Lobe};
+use crate::mixture::Mixture;
 
 /// A wavelength drawn from a material, in double or single precision.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,14 +48,14 @@ pub enum Draw<T> {
 }
 
 /// What is carried at one wavelength by reflection and by each fluorescent lobe.
-struct Shares<'m> {
+pub(crate) struct Shares<'m> {
     elastic: f64,
     /// At most two lobes for each of four materials.
     lobes: [Option<(f64, Lobe<'m>)>; 8],
 }
 
 impl<'m> Shares<'m> {
-    fn total(&self) -> f64 {
+    pub(crate) fn total(&self) -> f64 {
         self.elastic + self.lobes.iter().flatten().map(|(share, _)| share).sum::<f64>()
     }
 
@@ -74,69 +75,26 @@ impl<'m> Shares<'m> {
         }
         last
     }
-}
 
-impl<'m> Mixture<'m> {
-    /// Draws the wavelength of incident light, given that of the light that leaves: the camera's
-    /// way. `u` are two independent numbers in 0..1; the first chooses between reflection and
-    /// lobes, the second draws in the lobe.
-    ///
-    /// `None` where nothing can leave at `out_nm`.
-    pub fn sample_incident(&self, out_nm: f64, u: [f64; 2]) -> Option<Sample<f64>> {
-        let shares = self.shares_leaving(out_nm);
-        self.sample(out_nm, &shares, u, |lobe, u| {
-            let in_nm = lobe.sample_absorbed(u);
-            (in_nm, self.reradiation_per_nm(in_nm, out_nm))
-        })
+    pub(crate) fn elastic_probability(&self) -> f64 {
+        ratio(self.elastic, self.total())
     }
 
-    /// The density, 1/nm, with which [`Mixture::sample_incident`] draws `in_nm` by fluorescence.
-    pub fn incident_pdf_per_nm(&self, in_nm: f64, out_nm: f64) -> f64 {
-        ratio(self.reradiation_per_nm(in_nm, out_nm), self.shares_leaving(out_nm).total())
-    }
-
-    /// The probability, 0..=1, that [`Mixture::sample_incident`] keeps the wavelength.
-    pub fn incident_elastic_probability(&self, out_nm: f64) -> f64 {
-        ratio(self.reflectance(out_nm), self.shares_leaving(out_nm).total())
-    }
-
-    /// Draws the wavelength of the light that leaves, given that of incident light: the light's
-    /// way. `u` are two independent numbers in 0..1; the first chooses between reflection and
-    /// lobes, the second draws in the lobe.
-    ///
-    /// `None` where nothing of the light at `in_nm` leaves.
-    pub fn sample_outgoing(&self, in_nm: f64, u: [f64; 2]) -> Option<Sample<f64>> {
-        let shares = self.shares_arriving(in_nm);
-        self.sample(in_nm, &shares, u, |lobe, u| {
-            let out_nm = lobe.sample_emitted(u);
-            (out_nm, self.reradiation_per_nm(in_nm, out_nm))
-        })
-    }
-
-    /// The density, 1/nm, with which [`Mixture::sample_outgoing`] draws `out_nm` by fluorescence.
-    pub fn outgoing_pdf_per_nm(&self, in_nm: f64, out_nm: f64) -> f64 {
-        ratio(self.reradiation_per_nm(in_nm, out_nm), self.shares_arriving(in_nm).total())
-    }
-
-    /// The probability, 0..=1, that [`Mixture::sample_outgoing`] keeps the wavelength.
-    pub fn outgoing_elastic_probability(&self, in_nm: f64) -> f64 {
-        ratio(self.reflectance(in_nm), self.shares_arriving(in_nm).total())
-    }
-
-    fn sample(
+    /// Draws from one of the parts by two numbers in 0..1. `draw` gives a wavelength from a lobe and
+    /// the re-radiation between that and the known one.
+    pub(crate) fn sample(
         &self,
         known_nm: f64,
-        shares: &Shares<'m>,
         [choice, u]: [f64; 2],
         draw: impl Fn(Lobe<'m>, f64) -> (f64, f64),
     ) -> Option<Sample<f64>> {
-        let throughput = shares.total();
+        let throughput = self.total();
         if throughput <= 0.0 {
             return None;
         }
-        Some(match shares.choose(choice) {
+        Some(match self.choose(choice) {
             None => {
-                let probability = shares.elastic / throughput;
+                let probability = self.elastic / throughput;
                 Sample { nm: known_nm, throughput, draw: Draw::Elastic { probability } }
             }
             Some(lobe) => {
@@ -146,14 +104,16 @@ impl<'m> Mixture<'m> {
             }
         })
     }
+}
 
+impl<'m> Mixture<'m> {
     /// What leaves at `out_nm` of light that is 1 at every wavelength.
-    fn shares_leaving(&self, out_nm: f64) -> Shares<'m> {
+    pub(crate) fn shares_leaving(&self, out_nm: f64) -> Shares<'m> {
         self.shares(out_nm, |lobe| lobe.emission(out_nm) * lobe.returned_total_nm())
     }
 
     /// What leaves of light at `in_nm`.
-    fn shares_arriving(&self, in_nm: f64) -> Shares<'m> {
+    pub(crate) fn shares_arriving(&self, in_nm: f64) -> Shares<'m> {
         self.shares(in_nm, |lobe| lobe.returned(in_nm) * lobe.emitted_total())
     }
 
@@ -167,7 +127,7 @@ impl<'m> Mixture<'m> {
 }
 
 /// 0 where there is nothing to share.
-fn ratio(part: f64, whole: f64) -> f64 {
+pub(crate) fn ratio(part: f64, whole: f64) -> f64 {
     if whole > 0.0 { part / whole } else { 0.0 }
 }
 

@@ -3,7 +3,7 @@
 pub(crate) mod svg;
 pub(crate) mod terminal;
 
-use upglow::{Material, Mixture, Model, Sigmoid};
+use upglow::{Bispectral, Material, Mixture, Model, Sigmoid};
 use upglow_color::{Colorimetry, Grid, LinearRgb, srgb_encoded};
 
 /// First wavelength of every picture, nm.

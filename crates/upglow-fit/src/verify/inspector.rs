@@ -1,6 +1,6 @@
 //! Looks at one color after another and takes note of what it finds.
 
-use upglow::{Cube, Interpolation, Mixture, ModelOnGrid};
+use upglow::{Bispectral, Cube, Interpolation, Mixture, ModelOnGrid};
 use upglow_color::{LinearRgb, Xyz, ciede2000};
 
 use super::VerifyOptions;

@@ -343,7 +343,9 @@ impl Spectra {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use upglow::{AnalyticModel, DyeOptions, DyeSet, Features, Mixture, ModelOnGrid, QuantumYield};
+    use upglow::{
+        AnalyticModel, Bispectral, DyeOptions, DyeSet, Features, Mixture, ModelOnGrid, QuantumYield,
+    };
 
     /// Rounding only: sums of 531 numbers of at most 1.
     const ROUNDING: f64 = 1e-12;

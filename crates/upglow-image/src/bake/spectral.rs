@@ -1,6 +1,6 @@
 //! Reflectance in bands, and re-radiation between them.
 
-use upglow::{Cube, Interpolation, Model};
+use upglow::{Bispectral, Cube, Interpolation, Model};
 use upglow_color::{Grid, LinearRgb};
 
 use super::radiance::RadianceMaker;

@@ -2,7 +2,7 @@
 //!
 //! `docs/spectral-exr.md` describes it for readers in other languages.
 
-use upglow::{Accounting, DyeModel, Fluorescence, Mixing, Mixture};
+use upglow::{Accounting, Bispectral, DyeModel, Fluorescence, Mixing, Mixture};
 use upglow_color::Grid;
 
 use crate::exr::attribute::{Attribute, Attributes};

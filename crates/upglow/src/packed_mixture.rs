@@ -3,10 +3,14 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch, f32x4, f32x8, i32x4};
 
+use crate::bispectral::Bispectral;
 use crate::curve_table::{Curves, DyeNumbers, whole};
 use crate::inverse_root::{twice_inverse_root, twice_inverse_root8};
-use crate::lookup_table::{LookupTable, PackedNode, greater_of};
+use crate::lookup_table::{LookupTable, greater_of};
+use crate::packed_node::{PackedBells, PackedDyes, PackedNode, PackedReflectance};
+use crate::packed_sampling::{elastic, ratio, shifted};
 use crate::rounding::to_single;
+use crate::sampling::Sample;
 use crate::{Accounting, Model};
 
 /// The four materials around a color, mixed by weight: a [`crate::Mixture`] for inner loops.
@@ -15,7 +19,7 @@ use crate::{Accounting, Model};
 /// is that of the nearer end. None panics, whatever the wavelength. Nothing is allocated, and a
 /// look-up, an evaluation or a draw takes tens of nanoseconds at most.
 #[derive(Clone, Copy, Debug)]
-pub struct Blend<'t> {
+pub struct PackedMixture<'t> {
     pub(crate) table: &'t LookupTable,
     /// Whether any of the four fluoresces.
     pub(crate) fluorescent: bool,
@@ -26,7 +30,7 @@ pub struct Blend<'t> {
     edge_nm: [f32; 4],
     /// Coefficients of 1, d and d², `[coefficient][corner]`.
     parabola: [[f32; 4]; 3],
-    /// What [`PackedNode::fluorescence`] says, `[number][corner]`.
+    /// [`PackedNode::fluorescence`], `[number][corner]`; read as [`PackedDyes`] or [`PackedBells`].
     pub(crate) fluorescence: [[f32; 4]; 4],
 }
 
@@ -57,7 +61,7 @@ macro_rules! in_vectors {
     };
 }
 
-impl<'t> Blend<'t> {
+impl<'t> PackedMixture<'t> {
     #[inline(always)]
     pub(crate) fn new<S: Simd>(
         simd: S,
@@ -67,33 +71,20 @@ impl<'t> Blend<'t> {
     ) -> Self {
         // In vectors: what is written by numbers cannot be read by vectors until it has reached the
         // cache.
-        let [edge_nm, constant, linear, quadratic] =
-            transposed(nodes.map(|node| load(simd, &node.parabola)));
-        let [first, concentration, returned_nm, last] =
-            transposed(nodes.map(|node| load(simd, &node.fluorescence)));
+        let PackedReflectance { edge_nm, constant, linear, quadratic } =
+            transposed(nodes.map(|node| load(simd, &node.reflectance))).into();
+        let fluorescence = transposed(nodes.map(|node| load(simd, &node.fluorescence)));
+        // Bells have no dye in common, but nothing asks.
+        let PackedDyes { weight, concentration, returned_nm, first } = fluorescence.into();
         Self {
             table,
             fluorescent: concentration.simd_gt(0.0).any_true(),
-            common_dye: common_dye(simd, concentration, last),
+            common_dye: common_dye(simd, concentration, first),
             weights,
             edge_nm: edge_nm.into(),
             parabola: [constant.into(), linear.into(), quadratic.into()],
-            fluorescence: [first.into(), concentration.into(), returned_nm.into(), last.into()],
+            fluorescence: [weight.into(), concentration.into(), returned_nm.into(), first.into()],
         }
-    }
-
-    /// Whether any light comes back at another wavelength.
-    pub fn is_fluorescent(&self) -> bool {
-        self.fluorescent
-            && self.weights.iter().zip(self.fluorescence[1]).any(|(w, c)| *w > 0.0 && c > 0.0)
-    }
-
-    /// Share of incident light at `lambda_nm` that is reflected at the same wavelength, 0..=1.
-    #[inline]
-    pub fn reflectance(&self, lambda_nm: f32) -> f32 {
-        with_baseline!(simd => {
-            self.reflectance_through(simd, lambda_nm, self.pairs_absorbed(simd, lambda_nm))
-        })
     }
 
     /// The reflectance behind what the lobes absorb.
@@ -116,7 +107,7 @@ impl<'t> Blend<'t> {
         sum(weights * passed * shown).max(0.0)
     }
 
-    /// [`Blend::reflectance`] at four wavelengths, nm.
+    /// [`Bispectral::reflectance`] at four wavelengths, nm.
     #[inline]
     pub fn reflectance4(&self, lambda_nm: [f32; 4]) -> [f32; 4] {
         if self.fluorescent {
@@ -126,7 +117,7 @@ impl<'t> Blend<'t> {
         }
     }
 
-    /// [`Blend::reflectance`] at eight wavelengths, nm.
+    /// [`Bispectral::reflectance`] at eight wavelengths, nm.
     #[inline]
     pub fn reflectance8(&self, lambda_nm: [f32; 8]) -> [f32; 8] {
         let [a, b, c, d, e, f, g, h] = lambda_nm;
@@ -225,10 +216,10 @@ impl<'t> Blend<'t> {
     fn passed<S: Simd>(&self, simd: S, nm: f32x4<S>) -> [f32x4<S>; 4] {
         let all = f32x4::splat(simd, 1.0);
         let mut passed = [all; 4];
-        let [first, concentration, _, last] = self.fluorescence;
         match &self.table.model {
             Model::Reflectance => {}
             Model::Dyes(_) => {
+                let PackedDyes { weight, concentration, .. } = self.fluorescence.into();
                 let curves = &self.table.curves;
                 let rows = curves.rows(simd, nm);
                 let mut pair = [all; 2];
@@ -240,31 +231,20 @@ impl<'t> Blend<'t> {
                     if self.common_dye.is_none() {
                         pair = curves.absorption.pairs(simd, rows, [dyes[i]; 4]);
                     }
-                    let mixed = mix(pair, f32x4::splat(simd, first[i]));
+                    let mixed = mix(pair, f32x4::splat(simd, weight[i]));
                     passed[i] = all - mixed * concentration[i];
                 }
             }
             Model::Analytic(_) => {
+                let PackedBells { concentration, absorption_nm, .. } = self.fluorescence.into();
                 let bells = self.table.absorption_bells;
                 for i in 0..4 {
-                    let bell = bells.at(simd, f32x4::splat(simd, last[i]), nm);
+                    let bell = bells.at(simd, f32x4::splat(simd, absorption_nm[i]), nm);
                     passed[i] = all - bell * concentration[i];
                 }
             }
         }
         passed
-    }
-
-    /// Energy that comes out per nm at `out_nm` by fluorescence, per unit that came in at `in_nm`;
-    /// 1/nm.
-    #[inline]
-    pub fn reradiation_per_nm(&self, in_nm: f32, out_nm: f32) -> f32 {
-        if !self.fluorescent {
-            return 0.0;
-        }
-        with_baseline!(simd => {
-            self.moved(simd, self.returned(simd, in_nm), self.emission(simd, out_nm))
-        })
     }
 
     /// The re-radiation for what the lobes return of one wavelength and emit at another, 1/nm.
@@ -277,17 +257,6 @@ impl<'t> Blend<'t> {
     ) -> f32 {
         let weights: f32x4<S> = self.weights.simd_into(simd);
         sum(weights * (returned[0] * emission[0] + returned[1] * emission[1]))
-    }
-
-    /// Share of incident light at `in_nm` that comes out at any wavelength, 0..=1.
-    #[inline]
-    pub fn albedo(&self, in_nm: f32) -> f32 {
-        with_baseline!(simd => {
-            let absorbed = self.pairs_absorbed(simd, in_nm);
-            let [one, two] = self.returned_of(simd, in_nm, absorbed);
-            let weights: f32x4<_> = self.weights.simd_into(simd);
-            self.reflectance_through(simd, in_nm, absorbed) + sum(weights * (one + two))
-        })
     }
 
     /// The curves of each corner's dye and of its neighbor at one wavelength.
@@ -310,17 +279,19 @@ impl<'t> Blend<'t> {
         if !self.fluorescent {
             return [none; 2];
         }
-        let [first, concentration, _, last] = self.corner_numbers(simd);
         match &self.table.model {
             Model::Reflectance => [none; 2],
             Model::Dyes(_) => {
+                let PackedDyes { weight, concentration, .. } = self.corner_numbers(simd).into();
                 let [a, b] = self.pairs(simd, &self.table.curves.absorption, lambda_nm);
-                let second = concentration * first;
+                let second = concentration * weight;
                 [(concentration - second) * a, second * b]
             }
             Model::Analytic(_) => {
+                let PackedBells { concentration, absorption_nm, .. } =
+                    self.corner_numbers(simd).into();
                 let nm = f32x4::splat(simd, lambda_nm);
-                [concentration * self.table.absorption_bells.at(simd, last, nm), none]
+                [concentration * self.table.absorption_bells.at(simd, absorption_nm, nm), none]
             }
         }
     }
@@ -349,10 +320,10 @@ impl<'t> Blend<'t> {
         if !self.fluorescent {
             return [none; 2];
         }
-        let first: f32x4<S> = self.fluorescence[0].simd_into(simd);
         match &self.table.model {
             Model::Reflectance => [none; 2],
             Model::Dyes(model) => {
+                let PackedDyes { weight, .. } = self.corner_numbers(simd).into();
                 let accounting = model.options().accounting;
                 let yielded = self.dye_numbers(simd, |dye| dye.quantum_yield);
                 let per_mean = match accounting {
@@ -365,11 +336,12 @@ impl<'t> Blend<'t> {
                         two * yielded[1] * share(simd, accounting, in_nm, per_mean[1]),
                     ];
                 }
-                let mean_nm = mix(per_mean, first);
-                [(one + two) * mix(yielded, first) * share(simd, accounting, in_nm, mean_nm), none]
+                let mean_nm = mix(per_mean, weight);
+                [(one + two) * mix(yielded, weight) * share(simd, accounting, in_nm, mean_nm), none]
             }
             Model::Analytic(model) => {
-                let share = share(simd, model.accounting(), in_nm, first);
+                let PackedBells { emission_nm, .. } = self.corner_numbers(simd).into();
+                let share = share(simd, model.accounting(), in_nm, emission_nm);
                 [one * share * to_single(model.quantum_yield()), none]
             }
         }
@@ -378,7 +350,8 @@ impl<'t> Blend<'t> {
     /// The number of each corner's dye.
     #[inline(always)]
     fn dyes<S: Simd>(&self, simd: S) -> [u32; 4] {
-        let dyes: i32x4<S> = load(simd, &self.fluorescence[3]).to_int();
+        let PackedDyes { first, .. } = PackedDyes::from(self.fluorescence.each_ref());
+        let dyes: i32x4<S> = load(simd, first).to_int();
         let [a, b, c, d]: [i32; 4] = dyes.into();
         [a.cast_unsigned(), b.cast_unsigned(), c.cast_unsigned(), d.cast_unsigned()]
     }
@@ -407,15 +380,17 @@ impl<'t> Blend<'t> {
         if !self.fluorescent {
             return [none; 2];
         }
-        let first: f32x4<S> = self.fluorescence[0].simd_into(simd);
         match &self.table.model {
             Model::Reflectance => [none; 2],
             Model::Dyes(_) => {
+                let PackedDyes { weight, .. } = self.corner_numbers(simd).into();
                 let pair = self.pairs(simd, &self.table.curves.emission, out_nm);
-                if self.table.is_separate() { pair } else { [mix(pair, first), none] }
+                if self.table.is_separate() { pair } else { [mix(pair, weight), none] }
             }
             Model::Analytic(_) => {
-                [self.table.emission_bells.at(simd, first, f32x4::splat(simd, out_nm)), none]
+                let PackedBells { emission_nm, .. } = self.corner_numbers(simd).into();
+                let nm = f32x4::splat(simd, out_nm);
+                [self.table.emission_bells.at(simd, emission_nm, nm), none]
             }
         }
     }
@@ -428,7 +403,8 @@ impl<'t> Blend<'t> {
         if !self.fluorescent {
             return [none; 2];
         }
-        let [weight, concentration, returned_nm, _] = self.corner_numbers(simd);
+        let PackedDyes { weight, concentration, returned_nm, .. } =
+            self.corner_numbers(simd).into();
         let weights: f32x4<S> = self.weights.simd_into(simd);
         if !self.table.is_separate() {
             return [weights * returned_nm * emission[0], none];
@@ -456,8 +432,128 @@ impl<'t> Blend<'t> {
         if self.table.is_separate() {
             return [weighted[0] * emitted[0], weighted[1] * emitted[1]];
         }
-        let first: f32x4<S> = self.fluorescence[0].simd_into(simd);
-        [weighted[0] * mix(emitted, first), weighted[1]]
+        let PackedDyes { weight, .. } = self.corner_numbers(simd).into();
+        [weighted[0] * mix(emitted, weight), weighted[1]]
+    }
+}
+
+impl Bispectral for PackedMixture<'_> {
+    type Real = f32;
+
+    fn is_fluorescent(&self) -> bool {
+        let PackedDyes { concentration, .. } = PackedDyes::from(self.fluorescence);
+        self.fluorescent && self.weights.iter().zip(concentration).any(|(w, c)| *w > 0.0 && c > 0.0)
+    }
+
+    #[inline]
+    fn reflectance(&self, lambda_nm: f32) -> f32 {
+        with_baseline!(simd => {
+            self.reflectance_through(simd, lambda_nm, self.pairs_absorbed(simd, lambda_nm))
+        })
+    }
+
+    fn reflectances(&self, lambda_nm: &[f32], shares: &mut [f32]) {
+        for (shares, nm) in shares.chunks_mut(8).zip(lambda_nm.chunks(8)) {
+            let mut eight = [nm[0]; 8];
+            eight[..nm.len()].copy_from_slice(nm);
+            shares
+                .iter_mut()
+                .zip(self.reflectance8(eight))
+                .take(nm.len())
+                .for_each(|(share, reflectance)| *share = reflectance);
+        }
+    }
+
+    #[inline]
+    fn reradiation_per_nm(&self, in_nm: f32, out_nm: f32) -> f32 {
+        if !self.fluorescent {
+            return 0.0;
+        }
+        with_baseline!(simd => {
+            self.moved(simd, self.returned(simd, in_nm), self.emission(simd, out_nm))
+        })
+    }
+
+    #[inline]
+    fn albedo(&self, in_nm: f32) -> f32 {
+        with_baseline!(simd => {
+            let absorbed = self.pairs_absorbed(simd, in_nm);
+            let [one, two] = self.returned_of(simd, in_nm, absorbed);
+            let weights: f32x4<_> = self.weights.simd_into(simd);
+            self.reflectance_through(simd, in_nm, absorbed) + sum(weights * (one + two))
+        })
+    }
+
+    #[inline]
+    fn sample_incident(&self, out_nm: f32, u: [f32; 2]) -> Option<Sample<f32>> {
+        with_baseline!(simd => {
+            let emission = self.emission(simd, out_nm);
+            let shares = self.leaving(simd, out_nm, emission);
+            let throughput = shares.total();
+            Some(match shares.choose(self.lobes(), throughput, u[0])? {
+                None => elastic(out_nm, shares.elastic, throughput),
+                Some(lobe) => {
+                    let in_nm = self.draw_absorbed(simd, lobe, u[1]);
+                    let moved = self.moved(simd, self.returned(simd, in_nm), emission);
+                    shifted(in_nm, moved, throughput)
+                }
+            })
+        })
+    }
+
+    #[inline]
+    fn incident_pdf_per_nm(&self, in_nm: f32, out_nm: f32) -> f32 {
+        if !self.fluorescent {
+            return 0.0;
+        }
+        with_baseline!(simd => {
+            let emission = self.emission(simd, out_nm);
+            let moved = self.moved(simd, self.returned(simd, in_nm), emission);
+            ratio(moved, self.leaving(simd, out_nm, emission).total())
+        })
+    }
+
+    #[inline]
+    fn incident_elastic_probability(&self, out_nm: f32) -> f32 {
+        with_baseline!(simd => {
+            let shares = self.leaving(simd, out_nm, self.emission(simd, out_nm));
+            ratio(shares.elastic, shares.total())
+        })
+    }
+
+    #[inline]
+    fn sample_outgoing(&self, in_nm: f32, u: [f32; 2]) -> Option<Sample<f32>> {
+        with_baseline!(simd => {
+            let (returned, shares) = self.arriving(simd, in_nm);
+            let throughput = shares.total();
+            Some(match shares.choose(self.lobes(), throughput, u[0])? {
+                None => elastic(in_nm, shares.elastic, throughput),
+                Some(lobe) => {
+                    let out_nm = self.draw_emitted(simd, lobe, u[1]);
+                    let moved = self.moved(simd, returned, self.emission(simd, out_nm));
+                    shifted(out_nm, moved, throughput)
+                }
+            })
+        })
+    }
+
+    #[inline]
+    fn outgoing_pdf_per_nm(&self, in_nm: f32, out_nm: f32) -> f32 {
+        if !self.fluorescent {
+            return 0.0;
+        }
+        with_baseline!(simd => {
+            let (returned, shares) = self.arriving(simd, in_nm);
+            ratio(self.moved(simd, returned, self.emission(simd, out_nm)), shares.total())
+        })
+    }
+
+    #[inline]
+    fn outgoing_elastic_probability(&self, in_nm: f32) -> f32 {
+        with_baseline!(simd => {
+            let (_, shares) = self.arriving(simd, in_nm);
+            ratio(shares.elastic, shares.total())
+        })
     }
 }
 

@@ -1,101 +1,18 @@
-//! Drawing wavelengths in proportion to what a [`Blend`] makes of them: `sampling.rs` for inner
-//! loops, with the same measure.
+//! Drawing wavelengths in proportion to what a [`PackedMixture`] makes of them: `sampling.rs` for
+//! inner loops, with the same measure.
 
-use fearless_simd::{Level, Simd, dispatch};
+use fearless_simd::Simd;
 
-use crate::blend::{Blend, PerLobe, sum, with_baseline};
 use crate::curve_table::{DyeNumbers, whole};
 use crate::material::Lobe;
+use crate::packed_mixture::{PackedMixture, PerLobe, sum};
+use crate::packed_node::{PackedBells, PackedDyes};
 use crate::rounding::to_single;
 use crate::{Accounting, Draw, Fluorescence, Model, Sample};
 
-impl<'t> Blend<'t> {
-    /// Draws the wavelength of incident light, given that of the light that leaves; see
-    /// [`crate::Mixture::sample_incident`]. `u` are two independent numbers in 0..1.
-    ///
-    /// `None` where nothing can leave at `out_nm`.
-    #[inline]
-    pub fn sample_incident(&self, out_nm: f32, u: [f32; 2]) -> Option<Sample<f32>> {
-        with_baseline!(simd => {
-            let emission = self.emission(simd, out_nm);
-            let shares = self.leaving(simd, out_nm, emission);
-            let throughput = shares.total();
-            Some(match shares.choose(self.lobes(), throughput, u[0])? {
-                None => elastic(out_nm, shares.elastic, throughput),
-                Some(lobe) => {
-                    let in_nm = self.draw_absorbed(simd, lobe, u[1]);
-                    let moved = self.moved(simd, self.returned(simd, in_nm), emission);
-                    shifted(in_nm, moved, throughput)
-                }
-            })
-        })
-    }
-
-    /// The density, 1/nm, with which [`Blend::sample_incident`] draws `in_nm` by fluorescence.
-    #[inline]
-    pub fn incident_pdf_per_nm(&self, in_nm: f32, out_nm: f32) -> f32 {
-        if !self.fluorescent {
-            return 0.0;
-        }
-        with_baseline!(simd => {
-            let emission = self.emission(simd, out_nm);
-            let moved = self.moved(simd, self.returned(simd, in_nm), emission);
-            ratio(moved, self.leaving(simd, out_nm, emission).total())
-        })
-    }
-
-    /// The probability, 0..=1, that [`Blend::sample_incident`] keeps the wavelength.
-    #[inline]
-    pub fn incident_elastic_probability(&self, out_nm: f32) -> f32 {
-        with_baseline!(simd => {
-            let shares = self.leaving(simd, out_nm, self.emission(simd, out_nm));
-            ratio(shares.elastic, shares.total())
-        })
-    }
-
-    /// Draws the wavelength of the light that leaves, given that of incident light; see
-    /// [`crate::Mixture::sample_outgoing`]. `u` are two independent numbers in 0..1.
-    ///
-    /// `None` where nothing of the light at `in_nm` leaves.
-    #[inline]
-    pub fn sample_outgoing(&self, in_nm: f32, u: [f32; 2]) -> Option<Sample<f32>> {
-        with_baseline!(simd => {
-            let (returned, shares) = self.arriving(simd, in_nm);
-            let throughput = shares.total();
-            Some(match shares.choose(self.lobes(), throughput, u[0])? {
-                None => elastic(in_nm, shares.elastic, throughput),
-                Some(lobe) => {
-                    let out_nm = self.draw_emitted(simd, lobe, u[1]);
-                    let moved = self.moved(simd, returned, self.emission(simd, out_nm));
-                    shifted(out_nm, moved, throughput)
-                }
-            })
-        })
-    }
-
-    /// The density, 1/nm, with which [`Blend::sample_outgoing`] draws `out_nm` by fluorescence.
-    #[inline]
-    pub fn outgoing_pdf_per_nm(&self, in_nm: f32, out_nm: f32) -> f32 {
-        if !self.fluorescent {
-            return 0.0;
-        }
-        with_baseline!(simd => {
-            let (returned, shares) = self.arriving(simd, in_nm);
-            ratio(self.moved(simd, returned, self.emission(simd, out_nm)), shares.total())
-        })
-    }
-
-    /// The probability, 0..=1, that [`Blend::sample_outgoing`] keeps the wavelength.
-    #[inline]
-    pub fn outgoing_elastic_probability(&self, in_nm: f32) -> f32 {
-        with_baseline!(simd => {
-            let (_, shares) = self.arriving(simd, in_nm);
-            ratio(shares.elastic, shares.total())
-        })
-    }
-
+impl<'t> PackedMixture<'t> {
     #[inline(always)]
-    fn leaving<S: Simd>(&self, simd: S, out_nm: f32, emission: PerLobe<S>) -> Shares<S> {
+    pub(crate) fn leaving<S: Simd>(&self, simd: S, out_nm: f32, emission: PerLobe<S>) -> Shares<S> {
         let absorbed = self.pairs_absorbed(simd, out_nm);
         Shares {
             elastic: self.reflectance_through(simd, out_nm, absorbed),
@@ -104,7 +21,7 @@ impl<'t> Blend<'t> {
     }
 
     #[inline(always)]
-    fn arriving<S: Simd>(&self, simd: S, in_nm: f32) -> (PerLobe<S>, Shares<S>) {
+    pub(crate) fn arriving<S: Simd>(&self, simd: S, in_nm: f32) -> (PerLobe<S>, Shares<S>) {
         let absorbed = self.pairs_absorbed(simd, in_nm);
         let returned = self.returned_of(simd, in_nm, absorbed);
         let elastic = self.reflectance_through(simd, in_nm, absorbed);
@@ -113,7 +30,7 @@ impl<'t> Blend<'t> {
 
     /// An incident wavelength with the density of what a lobe returns, from `u` in 0..1.
     #[inline(always)]
-    fn draw_absorbed<S: Simd>(&self, simd: S, lobe: ChosenLobe, u: f32) -> f32 {
+    pub(crate) fn draw_absorbed<S: Simd>(&self, simd: S, lobe: ChosenLobe, u: f32) -> f32 {
         match &self.table.model {
             Model::Dyes(model) if model.options().accounting == Accounting::Energy => {
                 let (dye, u) = self.pick_dye(simd, lobe, |dye| dye.absorbed_nm, u);
@@ -127,7 +44,7 @@ impl<'t> Blend<'t> {
 
     /// An outgoing wavelength with the density of a lobe's emission, from `u` in 0..1.
     #[inline(always)]
-    fn draw_emitted<S: Simd>(&self, simd: S, lobe: ChosenLobe, u: f32) -> f32 {
+    pub(crate) fn draw_emitted<S: Simd>(&self, simd: S, lobe: ChosenLobe, u: f32) -> f32 {
         match &self.table.model {
             Model::Dyes(_) => {
                 let (dye, u) = self.pick_dye(simd, lobe, |dye| dye.emitted, u);
@@ -147,8 +64,8 @@ impl<'t> Blend<'t> {
         area: impl Fn(&DyeNumbers) -> f32,
         u: f32,
     ) -> (u32, f32) {
-        let [weight, _, _, last] = &self.fluorescence;
-        let first = whole(simd, last[corner]);
+        let PackedDyes { weight, first, .. } = PackedDyes::from(self.fluorescence.each_ref());
+        let first = whole(simd, first[corner]);
         if self.table.is_separate() {
             return (first + lobe, u);
         }
@@ -163,59 +80,61 @@ impl<'t> Blend<'t> {
 
     /// Lobes of a corner.
     #[inline(always)]
-    fn lobes(&self) -> u32 {
+    pub(crate) fn lobes(&self) -> u32 {
         if self.table.is_separate() { 2 } else { 1 }
     }
 
     fn lobe<S: Simd>(&self, simd: S, ChosenLobe { corner, lobe }: ChosenLobe) -> Option<Lobe<'t>> {
-        let [first, concentration, _, last] =
-            self.fluorescence.map(|numbers| f64::from(numbers[corner]));
+        let numbers = self.fluorescence.map(|numbers| f64::from(numbers[corner]));
         let model = &self.table.model;
         let fluorescence = match model {
             Model::Reflectance => Fluorescence::None,
-            Model::Dyes(_) => Fluorescence::Dyes {
-                first: whole(simd, to_single(last)) as usize,
-                weight: first,
-                concentration,
-            },
-            Model::Analytic(_) => Fluorescence::Analytic {
-                emission_peak_nm: first,
-                stokes_shift_nm: first - last,
-                concentration,
-            },
+            Model::Dyes(_) => {
+                let PackedDyes { weight, concentration, first, .. } = numbers.into();
+                let first = whole(simd, to_single(first)) as usize;
+                Fluorescence::Dyes { first, weight, concentration }
+            }
+            Model::Analytic(_) => {
+                let PackedBells { emission_nm, concentration, absorption_nm, .. } = numbers.into();
+                Fluorescence::Analytic {
+                    emission_peak_nm: emission_nm,
+                    stokes_shift_nm: emission_nm - absorption_nm,
+                    concentration,
+                }
+            }
         };
         fluorescence.lobes(model).nth(lobe as usize)
     }
 }
 
 #[inline(always)]
-fn elastic(nm: f32, share: f32, throughput: f32) -> Sample<f32> {
+pub(crate) fn elastic(nm: f32, share: f32, throughput: f32) -> Sample<f32> {
     Sample { nm, throughput, draw: Draw::Elastic { probability: share / throughput } }
 }
 
 #[inline(always)]
-fn shifted(nm: f32, reradiation_per_nm: f32, throughput: f32) -> Sample<f32> {
+pub(crate) fn shifted(nm: f32, reradiation_per_nm: f32, throughput: f32) -> Sample<f32> {
     let per_nm = reradiation_per_nm / throughput;
     Sample { nm, throughput, draw: Draw::Fluorescent { per_nm } }
 }
 
 /// What is carried at one wavelength by reflection and by each fluorescent lobe.
 #[derive(Clone, Copy, Debug)]
-struct Shares<S: Simd> {
-    elastic: f32,
+pub(crate) struct Shares<S: Simd> {
+    pub(crate) elastic: f32,
     lobes: PerLobe<S>,
 }
 
 impl<S: Simd> Shares<S> {
     #[inline(always)]
-    fn total(&self) -> f32 {
+    pub(crate) fn total(&self) -> f32 {
         self.elastic + sum(self.lobes[0] + self.lobes[1])
     }
 
     /// What `u` in 0..1 falls on, `Some(None)` for the elastic part; `None` where nothing is
     /// carried.
     #[inline(always)]
-    fn choose(&self, lobes: u32, throughput: f32, u: f32) -> Option<Option<ChosenLobe>> {
+    pub(crate) fn choose(&self, lobes: u32, throughput: f32, u: f32) -> Option<Option<ChosenLobe>> {
         if throughput <= 0.0 {
             return None;
         }
@@ -248,9 +167,9 @@ impl<S: Simd> Shares<S> {
     }
 }
 
-/// A lobe of a [`Blend`].
+/// A lobe of a [`PackedMixture`].
 #[derive(Clone, Copy, Debug)]
-struct ChosenLobe {
+pub(crate) struct ChosenLobe {
     corner: usize,
     /// Which of the corner's, 0 or 1.
     lobe: u32,
@@ -258,7 +177,7 @@ struct ChosenLobe {
 
 /// 0 where there is nothing to share.
 #[inline(always)]
-fn ratio(part: f32, whole: f32) -> f32 {
+pub(crate) fn ratio(part: f32, whole: f32) -> f32 {
     if whole > 0.0 { part / whole } else { 0.0 }
 }
 
@@ -266,7 +185,7 @@ fn ratio(part: f32, whole: f32) -> f32 {
 mod tests {
     use super::*;
     use crate::random::{Random, assert_drawn_from, models};
-    use crate::{Cube, FitRecord, LookupTable};
+    use crate::{Bispectral, Cube, FitRecord, LookupTable};
     use upglow_color::Contract;
 
     const DRAWS: usize = 20_000;
@@ -300,7 +219,7 @@ mod tests {
             let mut random = Random::new(seed);
             let table = table(model, &mut random);
             for nm in [450.3, 520.0, 590.7] {
-                let blend = table.blend(rgb(&mut random)).unwrap();
+                let blend = table.lookup(rgb(&mut random)).unwrap();
                 assert_drawn_from(
                     DRAWS,
                     |_| blend.sample_incident(nm, [unit(&mut random), unit(&mut random)]).map(wide),
@@ -325,7 +244,7 @@ mod tests {
             let mut random = Random::new(seed);
             let table = table(model, &mut random);
             for _ in 0..1000 {
-                let blend = table.blend(rgb(&mut random)).unwrap();
+                let blend = table.lookup(rgb(&mut random)).unwrap();
                 let nm = 350.0 + 350.0 * unit(&mut random);
                 let u = [unit(&mut random), unit(&mut random)];
                 let sample = blend.sample_incident(nm, u).unwrap();
@@ -349,7 +268,7 @@ mod tests {
         for (seed, model) in (0..).zip(models()) {
             let mut random = Random::new(seed);
             let table = table(model, &mut random);
-            let blend = table.blend([0.3, 0.4, 0.8]).unwrap();
+            let blend = table.lookup([0.3, 0.4, 0.8]).unwrap();
             for odd in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -1.0, 2.0, 1e38] {
                 for (nm, u) in [(odd, [0.9, 0.5]), (500.0, [odd, 0.5]), (500.0, [0.99, odd])] {
                     blend.sample_incident(nm, u);

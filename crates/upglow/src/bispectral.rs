@@ -1,0 +1,82 @@
+//! What a material answers to a renderer.
+
+use crate::sampling::Sample;
+
+/// A material that reflects and re-radiates: [`crate::Mixture`] in double precision,
+/// [`crate::PackedMixture`] in single.
+///
+/// # Drawing wavelengths
+///
+/// A path from the camera knows the outgoing wavelength and draws the incident one; a path from the
+/// light knows the incident wavelength and draws the outgoing one. The elastic part is a Dirac
+/// delta: it has a probability, not a density. The fluorescent part has a density per nm, which
+/// combines with those of other strategies by multiple importance sampling.
+///
+/// # Examples
+///
+/// ```
+/// use upglow::{Bispectral, Draw, DyeModel, DyeOptions, DyeSet, Fluorescence};
+/// use upglow::{Material, Mixture, Model, Sigmoid};
+///
+/// let model = Model::Dyes(DyeModel::new(DyeSet::named("seed8")?, DyeOptions::default())?);
+/// let fluorescence = Fluorescence::Dyes { first: 2, weight: 0.5, concentration: 0.8 };
+/// let reflectance = Sigmoid::flat(0.5);
+/// let mixture = Mixture::of(&model, Material { reflectance, fluorescence });
+/// let sample = mixture.sample_incident(540.0, [0.9, 0.5]).ok_or("absorbs everything")?;
+/// if let Draw::Fluorescent { per_nm } = sample.draw {
+///     assert_eq!(per_nm, mixture.incident_pdf_per_nm(sample.nm, 540.0));
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub trait Bispectral {
+    /// `f32` or `f64`.
+    type Real: Copy;
+
+    /// Whether any light comes back at another wavelength.
+    fn is_fluorescent(&self) -> bool;
+
+    /// Share of incident light at `lambda_nm` that is reflected at the same wavelength, 0..=1:
+    /// (1 − c·a(λ))·r(λ).
+    fn reflectance(&self, lambda_nm: Self::Real) -> Self::Real;
+
+    /// [`Bispectral::reflectance`] at each of `lambda_nm`, as far as there is room in `shares`.
+    fn reflectances(&self, lambda_nm: &[Self::Real], shares: &mut [Self::Real]) {
+        for (share, nm) in shares.iter_mut().zip(lambda_nm) {
+            *share = self.reflectance(*nm);
+        }
+    }
+
+    /// Energy that comes out per nm at `out_nm` by fluorescence, per unit that came in at `in_nm`;
+    /// 1/nm. Reflection at the same wavelength is [`Bispectral::reflectance`].
+    fn reradiation_per_nm(&self, in_nm: Self::Real, out_nm: Self::Real) -> Self::Real;
+
+    /// Share of incident light at `in_nm` that comes out at any wavelength, 0..=1.
+    fn albedo(&self, in_nm: Self::Real) -> Self::Real;
+
+    /// Draws the wavelength of incident light, given that of the light that leaves: for a path from
+    /// the camera. `u` are two independent numbers in 0..1; the first chooses between reflection and
+    /// fluorescence, the second draws the wavelength.
+    ///
+    /// `None` where nothing can leave at `out_nm`.
+    fn sample_incident(&self, out_nm: Self::Real, u: [Self::Real; 2])
+    -> Option<Sample<Self::Real>>;
+
+    /// The density, 1/nm, with which [`Bispectral::sample_incident`] draws `in_nm` by fluorescence.
+    fn incident_pdf_per_nm(&self, in_nm: Self::Real, out_nm: Self::Real) -> Self::Real;
+
+    /// The probability, 0..=1, that [`Bispectral::sample_incident`] keeps the wavelength.
+    fn incident_elastic_probability(&self, out_nm: Self::Real) -> Self::Real;
+
+    /// Draws the wavelength of the light that leaves, given that of incident light: for a path from
+    /// the light. `u` are two independent numbers in 0..1; the first chooses between reflection and
+    /// fluorescence, the second draws the wavelength.
+    ///
+    /// `None` where nothing of the light at `in_nm` leaves.
+    fn sample_outgoing(&self, in_nm: Self::Real, u: [Self::Real; 2]) -> Option<Sample<Self::Real>>;
+
+    /// The density, 1/nm, with which [`Bispectral::sample_outgoing`] draws `out_nm` by fluorescence.
+    fn outgoing_pdf_per_nm(&self, in_nm: Self::Real, out_nm: Self::Real) -> Self::Real;
+
+    /// The probability, 0..=1, that [`Bispectral::sample_outgoing`] keeps the wavelength.
+    fn outgoing_elastic_probability(&self, in_nm: Self::Real) -> Self::Real;
+}
