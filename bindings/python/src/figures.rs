@@ -4,7 +4,7 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use upglow::{FeatureError, Features};
 use upglow_color::{ColorSolid, Grid, Lab, Xyz};
-use upglow_study::{ChromaticityDiagram, Layer, Mixing, Reachability};
+use upglow_study::{ChromaticityDiagram, Layer, Mixing, standing_layer};
 
 use crate::contract::Contract;
 use crate::cube::Cube;
@@ -153,9 +153,9 @@ pub(crate) fn reachability<'py>(
 ) -> PyResult<Bound<'py, PyArray1<u8>>> {
     check_blue(blue)?;
     check_points("side", side)?;
-    let limits = Reachability::of(&contract.contract);
-    let layer = py.detach(|| on_threads(threads, || limits.layer(blue, side)))?;
-    Ok(PyArray1::from_iter(py, layer.iter().map(|&reach| reach as u8)))
+    let contract = &contract.contract;
+    let layer = py.detach(|| on_threads(threads, || standing_layer(contract, blue, side)))?;
+    Ok(PyArray1::from_iter(py, layer.iter().map(|&kind| kind as u8)))
 }
 
 /// X, Y, Z and L*, a*, b* of points on the surface of the solid of all reflectances, or of all

@@ -3,7 +3,6 @@
 use numpy::{PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use upglow_color::LinearRgb;
-use upglow_fit::{Estimate, StandingKind};
 
 use crate::contract::Contract;
 use crate::rows::{fill, triples};
@@ -24,25 +23,20 @@ pub(crate) fn standing<'py>(
     threads: Option<usize>,
 ) -> PyResult<Standings<'py>> {
     let rgb = triples(rgb.as_slice()?);
-    let nowhere = Estimate { kind: StandingKind::Reflectance, distance: 0.0, de2000: 0.0 };
-    let mut found = vec![nowhere; rgb.len()];
+    let mut found = vec![(0, 0.0, 0.0); rgb.len()];
     py.detach(|| {
         let table = contract.standing_table();
         on_threads(threads, || {
-            fill(&mut found, 1, |row, out| out[0] = table.estimate(LinearRgb(rgb[row])));
+            fill(&mut found, 1, |row, out| {
+                let standing = table.standing(LinearRgb(rgb[row]));
+                let beyond = standing.beyond();
+                out[0] = (standing.kind as u8, beyond.distance, beyond.de2000);
+            });
         })
     })?;
     Ok((
-        PyArray1::from_iter(py, found.iter().map(|e| number(e.kind))),
-        PyArray1::from_iter(py, found.iter().map(|e| e.distance)),
-        PyArray1::from_iter(py, found.iter().map(|e| e.de2000)),
+        PyArray1::from_iter(py, found.iter().map(|f| f.0)),
+        PyArray1::from_iter(py, found.iter().map(|f| f.1)),
+        PyArray1::from_iter(py, found.iter().map(|f| f.2)),
     ))
-}
-
-fn number(kind: StandingKind) -> u8 {
-    match kind {
-        StandingKind::Reflectance => 0,
-        StandingKind::NeedsFluorescence => 1,
-        StandingKind::Unreachable => 2,
-    }
 }

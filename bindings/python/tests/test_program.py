@@ -14,7 +14,15 @@ import upglow
 # The program prints doubles in full; colors come in single precision here.
 ROUNDING = 1e-12
 SINGLE = 1e-6
-COLORS = [(0.9, 0.1, 0.8), (0.5, 0.5, 0.5), (0.2, 0.7, 0.1), (0.0, 1.0, 0.0), (0.13, 0.57, 0.91)]
+# The last is a little beyond what reflectances show.
+COLORS = [
+    (0.9, 0.1, 0.8),
+    (0.5, 0.5, 0.5),
+    (0.2, 0.7, 0.1),
+    (0.0, 1.0, 0.0),
+    (0.13, 0.57, 0.91),
+    (0.6337, 0.5123, 0.0043),
+]
 
 
 @pytest.fixture(scope="module")
@@ -47,7 +55,10 @@ def test_both_show_the_same_material(program: str, file: Path, rgb) -> None:
     # Rounding of the color to single precision, in units of ΔE00.
     assert abs(check.de2000 - told["de2000"]) < 1e-4
     kinds = {"reflectance": 0, "needs_fluorescence": 1, "unreachable": 2}
-    assert check.kind == kinds[told["standing"]["kind"]]
+    standing = told["standing"]
+    assert check.kind == kinds[standing.pop("kind")]
+    told_beyond = list(standing.values()) or [0.0, 0.0]
+    assert np.allclose([check.distance, check.nearest_de2000], told_beyond, rtol=0, atol=ROUNDING)
     weights = np.array([part["weight"] for part in told["parts"]])
     ours = cube.corners(rgb).weights
     assert np.allclose(ours[ours > 0], weights, atol=ROUNDING)

@@ -1,6 +1,8 @@
 //! What no material can beat: the convex body of the colors that any surface can show.
 
-use crate::{Colorimetry, Xyz};
+use crate::colorimetry::Colorimetry;
+use crate::metric::Metric;
+use crate::values::Xyz;
 
 /// The set of colors of all reflectances, or of all fluorescent materials, under one light.
 ///
@@ -8,6 +10,7 @@ use crate::{Colorimetry, Xyz};
 /// out, which a material that is all-or-nothing at each wavelength shows.
 #[derive(Clone, Debug)]
 pub struct ColorSolid {
+    colorimetry: Colorimetry,
     bands: Vec<Band>,
     fluorescent: bool,
 }
@@ -23,10 +26,19 @@ struct Band {
 /// The point of a [`ColorSolid`] nearest to a color.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nearest {
-    /// The nearest color that the solid holds.
+    /// The nearest color that the solid holds, by Euclidean distance in XYZ; a color inside itself.
     pub color: Xyz,
     /// Euclidean distance to it in XYZ; 0 for a color inside.
     pub distance: f64,
+    /// ΔE00 to it; 0 for a color inside. Another color on the surface may be nearer in ΔE00.
+    pub de2000: f64,
+}
+
+impl Nearest {
+    /// The answer for a color inside.
+    pub(crate) fn itself(color: Xyz) -> Self {
+        Self { color, distance: 0.0, de2000: 0.0 }
+    }
 }
 
 /// Colors closer than this in XYZ count as inside. Larger hides real gaps (one ΔE00 is about 1e-3
@@ -71,12 +83,12 @@ impl ColorSolid {
                 matching,
             })
             .collect();
-        Self { bands, fluorescent }
+        Self { colorimetry: colorimetry.clone(), bands, fluorescent }
     }
 
     /// The color of the solid that lies furthest in direction `n`.
     pub fn support(&self, n: [f64; 3]) -> Xyz {
-        let mut sum = [0.0; 3];
+        let mut sum = Xyz::default();
         // The outgoing color of one unit of photons times wavelength, best so far from the red end.
         let mut best = [0.0; 3];
         for band in self.bands.iter().rev() {
@@ -88,30 +100,37 @@ impl ColorSolid {
                 best = per_photon;
             }
             let photons = band.irradiance * band.wavelength_nm;
-            (0..3).for_each(|k| sum[k] += photons * best[k]);
+            sum += photons * Xyz(best);
         }
-        Xyz(sum)
+        sum
     }
 
     /// Whether some material of this kind shows `color`.
     pub fn contains(&self, color: Xyz) -> bool {
-        self.search(color, Goal::Verdict).distance <= ON_THE_SURFACE
+        self.search(color, Goal::Verdict).is_none()
     }
 
     /// The color nearest to `color` that some material of this kind shows.
     pub fn nearest(&self, color: Xyz) -> Nearest {
-        self.search(color, Goal::Distance)
+        self.search(color, Goal::Distance).map_or(Nearest::itself(color), |offset| {
+            let distance = dot(offset, offset).sqrt();
+            let nearest = color + offset.into();
+            let de2000 = Metric::De2000.distance(&self.colorimetry, color, nearest);
+            Nearest { color: nearest, distance, de2000 }
+        })
     }
 
-    /// Walks towards the nearest point; each step asks the support for a point further on, and
+    /// The way from `color` to the nearest point; `None` from inside or on the surface.
+    ///
+    /// Walks towards that point; each step asks the support for a point further on, and
     /// keeps the corners of the simplex that the nearest point so far lies in.
     ///
     /// # Source
     ///
     /// `gilbert`; the nearest point of a simplex by trying all its faces, which is exact for up to
     /// four corners.
-    fn search(&self, color: Xyz, goal: Goal) -> Nearest {
-        let relative = |p: Xyz| [0, 1, 2].map(|k| p.0[k] - color.0[k]);
+    fn search(&self, color: Xyz, goal: Goal) -> Option<[f64; 3]> {
+        let relative = |p: Xyz| (p - color).0;
         let mut nearest = relative(self.support([1.0; 3]));
         let mut simplex = Corners::from_iter([nearest]);
         for _ in 0..STEP_LIMIT {
@@ -131,9 +150,7 @@ impl ColorSolid {
             }
             (nearest, simplex) = (point, corners);
         }
-        let distance = dot(nearest, nearest).sqrt();
-        let color = Xyz([0, 1, 2].map(|k| color.0[k] + nearest[k]));
-        Nearest { color, distance: if distance <= ON_THE_SURFACE { 0.0 } else { distance } }
+        if dot(nearest, nearest).sqrt() <= ON_THE_SURFACE { None } else { Some(nearest) }
     }
 }
 
@@ -287,7 +304,7 @@ mod tests {
             prop_assert!(reflectance.contains(color) && fluorescence.contains(color));
             for solid in [&reflectance, &fluorescence] {
                 let edge = solid.support(n);
-                let beyond = Xyz([0, 1, 2].map(|k| edge.0[k] + 0.01 * n[k]));
+                let beyond = edge + 0.01 * Xyz(n);
                 prop_assert!(!solid.contains(beyond));
                 let nearest = solid.nearest(beyond);
                 // The edge point itself is one candidate; the plane through it proves the rest.

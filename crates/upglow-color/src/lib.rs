@@ -6,7 +6,8 @@
 //!
 //! - spectra: [`Grid`], [`Spectrum`], [`Observer`], [`Illuminant`]
 //! - color: [`Xyz`], [`LinearRgb`], [`Lab`], [`RgbSpace`], [`Adaptation`], [`Metric`]
-//! - limits: [`ColorSolid`], which says whether any material shows a color
+//! - limits: [`ColorSolid`], the colors that materials show; [`ColorSolids::standing`], what it takes
+//!   to show a color and how far it is beyond
 //! - measured tables: [`MeasuredDye`] and the named sets of dyes
 //!
 //! Wavelengths are nm. Tristimulus values are relative: Y = 1 is the perfect diffuser.
@@ -42,6 +43,7 @@ mod rgb_space;
 mod samples;
 mod spectrum;
 mod srgb_curve;
+mod standing;
 mod tables;
 mod values;
 
@@ -62,4 +64,5 @@ pub use rgb_space::{RgbSpace, RgbSpaceError};
 pub use samples::{Place, SampleRules, SamplesError, curves_from_samples};
 pub use spectrum::{Spectrum, SpectrumCsvError, SpectrumError, read_columns};
 pub use srgb_curve::{srgb_decoded, srgb_encoded};
+pub use standing::{ColorSolids, Standing, StandingKind};
 pub use values::{LinearRgb, Xyz};

@@ -4,8 +4,8 @@ use std::sync::OnceLock;
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use upglow_color::{Contract, LinearRgb};
-use upglow_fit::{StandingKind, StandingTable};
+use upglow_color::{Contract, LinearRgb, StandingKind};
+use upglow_fit::StandingTable;
 
 fn main() {
     divan::main();

@@ -1,6 +1,7 @@
 //! The way from colors to materials: fits one color, builds whole cubes, verifies what was built.
 //!
-//! - one color: [`Fitter`], [`Fit`], [`Standing`]; millions of them: [`StandingTable`]
+//! - one color: [`Fitter`], [`Fit`]
+//! - what it takes to show millions of colors: [`StandingTable`]
 //! - a cube: [`build_cube`], [`CubeSummary`], [`verify`]
 //! - underneath: [`solve`], a bounded Levenberg-Marquardt solver for [`Residuals`]
 //!
@@ -37,7 +38,6 @@ mod progress;
 mod rounding;
 mod search;
 mod solver;
-mod standing;
 mod standing_table;
 mod starts;
 mod summary;
@@ -51,7 +51,6 @@ pub use options::{FitOptions, FitOptionsError, Method};
 pub use polish::Polisher;
 pub use progress::{Progress, Unwatched, Watch};
 pub use solver::{Jacobian, Residuals, SolverOptions, Stop, Summary, jacobian_error, solve};
-pub use standing::Standing;
-pub use standing_table::{Estimate, Gap, Gaps, StandingKind, StandingTable};
+pub use standing_table::{Estimate, StandingTable};
 pub use summary::{CubeSummary, Spread};
 pub use verify::{Check, Offender, Place, Stopped, Verdict, VerifyOptions, VerifyReport, verify};

@@ -1,17 +1,17 @@
-//! Where millions of colors stand: the answers of [`Standing`], from convexity instead of a search.
+//! Where millions of colors stand: the answers of [`ColorSolids`](upglow_color::ColorSolids), from
+//! convexity instead of a search.
 
 mod lattice;
-mod solids;
+mod reach;
 
 use std::sync::OnceLock;
 
-use upglow_color::{Colorimetry, Contract, LinearRgb, Metric, Xyz};
+use upglow_color::{Colorimetry, Contract, LinearRgb, Standing, StandingKind};
 
-use crate::Standing;
 use lattice::{Cell, Lattice};
-use solids::Solids;
+use reach::Reach;
 
-/// The answers of [`Standing::of`] under one contract, fast enough for every texel of a picture.
+/// The answers of [`ColorSolids::standing`](upglow_color::ColorSolids::standing) under one contract, fast enough for every texel of a picture.
 ///
 /// Both solids of colors are convex. So a box of RGB is inside a solid if its eight corners are,
 /// and outside if one plane parts them all from it; only colors in boxes that a surface passes
@@ -20,54 +20,23 @@ use solids::Solids;
 /// in it. The answers do not depend on what was asked before, or by which thread.
 #[derive(Debug)]
 pub struct StandingTable {
-    solids: Solids,
+    reach: Reach,
     /// Black and white, which fill whole parts of pictures and lie on a surface.
     known: [(LinearRgb, StandingKind); 2],
     /// `[size][sign of blue, green, red]`.
     lattices: Vec<OnceLock<Lattice>>,
 }
 
-/// A [`Standing`] without its distances.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum StandingKind {
-    /// Some reflectance shows the color.
-    Reflectance,
-    /// No reflectance shows it, some fluorescent material does.
-    NeedsFluorescence,
-    /// No material shows it.
-    Unreachable,
-}
-
 /// Where a color stands, and about how far it is from what it is beyond.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
-    /// Exactly the kind that [`Standing::of`] finds.
+    /// Exactly the kind of [`StandingTable::standing`].
     pub kind: StandingKind,
     /// Distance in XYZ to the nearest color of any reflectance, or, if the color is unreachable, of
     /// any material. Interpolated, and never less than the distance itself; 0 for a reflectance.
     pub distance: f64,
     /// ΔE00 to that color, interpolated; 0 for a reflectance.
     pub de2000: f64,
-}
-
-/// The nearest color that a kind of material shows.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Gap {
-    /// That color; the color asked for, if it is within reach.
-    pub nearest: Xyz,
-    /// Euclidean distance to it in XYZ; 0 within reach.
-    pub distance: f64,
-    /// ΔE00 to it; 0 within reach.
-    pub de2000: f64,
-}
-
-/// How far a color is from what materials show.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Gaps {
-    /// To the nearest color of any reflectance.
-    pub reflectance: Gap,
-    /// To the nearest color of any fluorescent material.
-    pub fluorescence: Gap,
 }
 
 /// Largest size of a lattice is 2⁴ = 16: brighter colors than any that is fitted
@@ -84,31 +53,32 @@ const OCTANTS: usize = 8;
 impl StandingTable {
     /// A table for `contract`, by sums over 5 nm; it fills as it is asked.
     pub fn new(contract: &Contract) -> Self {
-        let solids = Solids::new(contract);
-        let known = [0.0, 1.0].map(|v| (LinearRgb([v; 3]), solids.kind(LinearRgb([v; 3]))));
+        let reach = Reach::new(contract);
+        let known = [0.0, 1.0].map(|v| (LinearRgb([v; 3]), reach.kind(LinearRgb([v; 3]))));
         let sizes = usize::try_from(LARGEST_EXPONENT - SMALLEST_EXPONENT + 1)
             .expect("the largest is not the smallest");
         let lattices = std::iter::repeat_with(OnceLock::new).take(sizes * OCTANTS).collect();
-        Self { solids, known, lattices }
+        Self { reach, known, lattices }
     }
 
     /// White, matrices and weights behind every answer.
     pub fn colorimetry(&self) -> &Colorimetry {
-        &self.solids.colorimetry
+        &self.reach.colorimetry
     }
 
-    /// Exactly what [`Standing::of`] says, by the same search.
+    /// Where `rgb` stands, and how far it is beyond; a search for what is not a reflectance.
     pub fn standing(&self, rgb: LinearRgb) -> Standing {
-        self.solids.standing(rgb)
+        let color = self.colorimetry().xyz_from_rgb(rgb);
+        self.reach.solids.standing_of_kind(color, self.kind(rgb))
     }
 
-    /// The kind of [`Standing::of`], in nanoseconds for most colors.
+    /// What it takes to show `rgb`, in nanoseconds for most colors.
     ///
     /// # Examples
     ///
     /// ```
-    /// use upglow_color::{Contract, LinearRgb};
-    /// use upglow_fit::{StandingKind, StandingTable};
+    /// use upglow_color::{Contract, LinearRgb, StandingKind};
+    /// use upglow_fit::StandingTable;
     ///
     /// let table = StandingTable::new(&Contract::default());
     /// assert_eq!(table.kind(LinearRgb([0.5, 0.4, 0.3])), StandingKind::Reflectance);
@@ -119,61 +89,35 @@ impl StandingTable {
         self.look(rgb).0
     }
 
-    /// The kind of [`Standing::of`], and about how far the color is beyond.
+    /// What it takes to show `rgb`, and about how far it is beyond.
     pub fn estimate(&self, rgb: LinearRgb) -> Estimate {
         let (kind, lattice) = self.look(rgb);
         let [distance, de2000] = match (kind, lattice) {
             (StandingKind::Reflectance, _) => [0.0; 2],
             (StandingKind::NeedsFluorescence, Some(at)) => at.interpolate(rgb, |c| c.reflectance),
             (StandingKind::Unreachable, Some(at)) => at.interpolate(rgb, |c| c.fluorescence),
-            (_, None) => self.measured(rgb, kind),
+            (_, None) => {
+                let beyond = self.standing(rgb).beyond();
+                [beyond.distance, beyond.de2000]
+            }
         };
         Estimate { kind, distance, de2000 }
-    }
-
-    /// How far `rgb` is from what reflectances and what any materials show, by search.
-    pub fn gaps(&self, rgb: LinearRgb) -> Gaps {
-        let color = self.colorimetry().xyz_from_rgb(rgb);
-        let gap = |solid: &upglow_color::ColorSolid| {
-            let nearest = solid.nearest(color);
-            self.gap(color, nearest.color, nearest.distance)
-        };
-        Gaps {
-            reflectance: gap(&self.solids.reflectance),
-            fluorescence: gap(&self.solids.fluorescence),
-        }
-    }
-
-    fn gap(&self, color: Xyz, nearest: Xyz, distance: f64) -> Gap {
-        if distance == 0.0 {
-            return Gap { nearest: color, distance, de2000: 0.0 };
-        }
-        let de2000 = Metric::De2000.distance(self.colorimetry(), color, nearest);
-        Gap { nearest, distance, de2000 }
-    }
-
-    /// Distance and ΔE00 by search.
-    fn measured(&self, rgb: LinearRgb, kind: StandingKind) -> [f64; 2] {
-        let gaps = self.gaps(rgb);
-        let beyond =
-            if kind == StandingKind::Unreachable { gaps.fluorescence } else { gaps.reflectance };
-        [beyond.distance, beyond.de2000]
     }
 
     /// The kind, and the lattice with the box around `rgb`, where there is one.
     fn look(&self, rgb: LinearRgb) -> (StandingKind, Option<&Lattice>) {
         let Some(mut lattice) = self.lattice(rgb) else {
-            return (self.solids.kind(rgb), None);
+            return (self.reach.kind(rgb), None);
         };
         loop {
-            match lattice.cell(rgb, &self.solids) {
+            match lattice.cell(rgb, &self.reach) {
                 Cell::Settled(kind) => return (*kind, Some(lattice)),
                 Cell::Divided(parts) => lattice = parts,
                 Cell::Mixed(mixed) => {
                     let known = self.known.iter().find(|(color, _)| *color == rgb);
                     let kind = match known {
                         Some((_, kind)) => *kind,
-                        None => lattice.kind_in(mixed, rgb, &self.solids),
+                        None => lattice.kind_in(mixed, rgb, &self.reach),
                     };
                     return (kind, Some(lattice));
                 }
@@ -206,21 +150,11 @@ fn exponent_above(value: f64) -> i64 {
     (below >> MANTISSA_BITS).cast_signed() - BIAS + 1
 }
 
-impl From<&Standing> for StandingKind {
-    fn from(standing: &Standing) -> Self {
-        match standing {
-            Standing::Reflectance => Self::Reflectance,
-            Standing::NeedsFluorescence { .. } => Self::NeedsFluorescence,
-            Standing::Unreachable { .. } => Self::Unreachable,
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use rayon::prelude::*;
-    use upglow_color::{Adaptation, Illuminant, RgbSpace};
+    use upglow_color::{Adaptation, ColorSolids, Illuminant, RgbSpace};
 
     fn contracts() -> [Contract; 3] {
         let space = |name| RgbSpace::named(name).unwrap();
@@ -255,12 +189,18 @@ mod tests {
         })
     }
 
+    /// The answer without the table.
+    fn searched(table: &StandingTable, rgb: LinearRgb) -> Standing {
+        let colorimetry = table.colorimetry();
+        ColorSolids::new(colorimetry).standing(colorimetry.xyz_from_rgb(rgb))
+    }
+
     fn assert_same_answers(contract: &Contract, count: u32) {
         let table = StandingTable::new(contract);
         let wrong: Vec<_> = (0..count)
             .into_par_iter()
             .map(color)
-            .filter(|&rgb| table.kind(rgb) != StandingKind::from(&table.standing(rgb)))
+            .filter(|&rgb| table.kind(rgb) != searched(&table, rgb).kind)
             .collect();
         assert!(wrong.is_empty(), "{} under {:?}: {wrong:?}", wrong.len(), contract.space);
     }
@@ -270,7 +210,7 @@ mod tests {
         for contract in contracts() {
             let table = StandingTable::new(&contract);
             for rgb in (0..100).map(color) {
-                assert_eq!(table.standing(rgb), Standing::of(rgb, &contract), "{rgb:?}");
+                assert_eq!(table.standing(rgb), searched(&table, rgb), "{rgb:?}");
             }
         }
     }
@@ -293,7 +233,7 @@ mod tests {
         let n = values.len();
         for index in 0..n * n * n {
             let rgb = LinearRgb([index, index / n, index / (n * n)].map(|k| values[k % n]));
-            assert_eq!(table.kind(rgb), StandingKind::from(&table.standing(rgb)), "{rgb:?}");
+            assert_eq!(table.kind(rgb), searched(&table, rgb).kind, "{rgb:?}");
         }
     }
 
@@ -318,12 +258,7 @@ mod tests {
         for rgb in (0..5000).map(color) {
             let estimate = table.estimate(rgb);
             assert_eq!(estimate.kind, table.kind(rgb));
-            let gaps = table.gaps(rgb);
-            let gap = match estimate.kind {
-                StandingKind::Reflectance => 0.0,
-                StandingKind::NeedsFluorescence => gaps.reflectance.distance,
-                StandingKind::Unreachable => gaps.fluorescence.distance,
-            };
+            let gap = table.standing(rgb).beyond().distance;
             // Rounding of sums, and the gap at which a search stops.
             assert!(estimate.distance >= gap - 1e-8, "{rgb:?} {estimate:?} {gap}");
             if rgb.0.iter().all(|v| *v <= 1.0) && gap > 0.0 {
@@ -335,11 +270,11 @@ mod tests {
     }
 
     #[test]
-    fn within_reach_the_gap_is_nothing_and_beyond_it_is_measured() {
+    fn within_reach_the_distance_is_nothing_and_beyond_it_is_measured() {
         let table = StandingTable::new(&Contract::default());
-        let gray = table.gaps(LinearRgb([0.5; 3]));
+        let gray = table.standing(LinearRgb([0.5; 3]));
         assert_eq!((gray.reflectance.distance, gray.fluorescence.de2000), (0.0, 0.0));
-        let green = table.gaps(LinearRgb([0.0, 1.0, 0.0]));
+        let green = table.standing(LinearRgb([0.0, 1.0, 0.0]));
         assert!(green.reflectance.distance > green.fluorescence.distance);
         assert!(green.fluorescence.de2000 > 1.0);
     }

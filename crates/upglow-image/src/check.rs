@@ -20,8 +20,7 @@ pub use opinion::CubeOpinion;
 pub use raster::Raster;
 use tally::Tally;
 pub use tally::{Counts, Flaw, Located};
-use upglow_color::LinearRgb;
-use upglow_fit::{Gaps, StandingKind};
+use upglow_color::{LinearRgb, Standing};
 
 /// Takes a picture by bands of rows, and says what each texel needs.
 ///
@@ -122,10 +121,8 @@ pub struct WorstTexel {
     pub y: usize,
     /// Its color, linear RGB of the contract's space.
     pub rgb: [f32; 3],
-    /// What it takes to show it.
-    pub kind: StandingKind,
-    /// How far it is from what materials show.
-    pub gaps: Gaps,
+    /// What it takes to show it, and how far it is from what materials show.
+    pub standing: Standing,
     /// The color asked for, the nearest of a reflectance, and the nearest of any material, in sRGB.
     pub swatches: [[u8; 3]; 3],
 }
@@ -207,20 +204,17 @@ fn worst(judge: &Judge, display: &Display, tally: &Tally) -> Vec<WorstTexel> {
         .par_iter()
         .map(|candidate| {
             let rgb = LinearRgb(candidate.rgb.map(f64::from));
-            let gaps = judge.table().gaps(rgb);
+            let standing = judge.table().standing(rgb);
             let asked = judge.table().colorimetry().xyz_from_rgb(rgb);
-            let nearest = [gaps.reflectance.nearest, gaps.fluorescence.nearest];
+            let nearest = [standing.reflectance.color, standing.fluorescence.color];
             let swatches = [asked, nearest[0], nearest[1]].map(|xyz| display.srgb(xyz));
             let (x, y) = candidate.place();
-            WorstTexel { x, y, rgb: candidate.rgb, kind: candidate.kind, gaps, swatches }
+            WorstTexel { x, y, rgb: candidate.rgb, standing, swatches }
         })
         .collect();
-    let beyond = |t: &WorstTexel| match t.kind {
-        StandingKind::Unreachable => t.gaps.fluorescence.distance,
-        _ => t.gaps.reflectance.distance,
-    };
+    let beyond = |t: &WorstTexel| t.standing.beyond().distance;
     all.sort_by(|a, b| {
-        let worse = b.kind.cmp(&a.kind).then(beyond(b).total_cmp(&beyond(a)));
+        let worse = b.standing.kind.cmp(&a.standing.kind).then(beyond(b).total_cmp(&beyond(a)));
         worse.then((a.y, a.x).cmp(&(b.y, b.x)))
     });
     all.truncate(Checker::WORST);
@@ -230,8 +224,7 @@ fn worst(judge: &Judge, display: &Display, tally: &Tally) -> Vec<WorstTexel> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use upglow_color::{Contract, LinearRgb};
-    use upglow_fit::Standing;
+    use upglow_color::{Contract, LinearRgb, StandingKind};
 
     const WIDTH: usize = 61;
     const HEIGHT: usize = 47;
@@ -283,9 +276,9 @@ mod tests {
         let table = upglow_fit::StandingTable::new(&Contract::default());
         let standings: Vec<Standing> =
             finite.map(|t| table.standing(LinearRgb(t.map(f64::from)))).collect();
-        let count = |is: fn(&Standing) -> bool| standings.iter().filter(|s| is(s)).count() as u64;
-        assert_eq!(found.reflectance, count(|s| matches!(s, Standing::Reflectance)));
-        assert_eq!(found.unreachable, count(|s| matches!(s, Standing::Unreachable { .. })));
+        let count = |kind| standings.iter().filter(|s| s.kind == kind).count() as u64;
+        assert_eq!(found.reflectance, count(StandingKind::Reflectance));
+        assert_eq!(found.unreachable, count(StandingKind::Unreachable));
         assert_eq!(found.no_color, (rgb.len() - standings.len()) as u64);
         let all = [found.reflectance, found.needs_fluorescence, found.unreachable, found.no_color];
         assert_eq!(all.iter().sum::<u64>(), rgb.len() as u64);
@@ -316,17 +309,18 @@ mod tests {
         let rgb = picture();
         let judge = judge();
         let found = report(&judge, &rgb, HEIGHT).worst;
-        let distance =
-            |t: &[f32; 3]| judge.table().gaps(LinearRgb(t.map(f64::from))).fluorescence.distance;
+        let distance = |t: &[f32; 3]| {
+            judge.table().standing(LinearRgb(t.map(f64::from))).fluorescence.distance
+        };
         let finite = rgb.iter().filter(|t| t.iter().all(|v| v.is_finite()));
         let greatest = finite.map(distance).fold(0.0, f64::max);
         assert_eq!(found.len(), Checker::WORST);
-        assert_eq!(found[0].gaps.fluorescence.distance, greatest);
+        assert_eq!(found[0].standing.fluorescence.distance, greatest);
         for (i, texel) in found.iter().enumerate() {
             assert_eq!(rgb[texel.y * WIDTH + texel.x], texel.rgb);
             assert!(found[..i].iter().all(|other| other.rgb != texel.rgb));
         }
-        let order: Vec<f64> = found.iter().map(|t| t.gaps.fluorescence.distance).collect();
+        let order: Vec<f64> = found.iter().map(|t| t.standing.fluorescence.distance).collect();
         assert!(order.is_sorted_by(|a, b| a >= b), "{order:?}");
     }
 

@@ -13,5 +13,5 @@ pub use dye_spectra::{DyeSpectra, dye_spectra};
 pub use layer::Layer;
 pub use mixing::Mixing;
 pub use node_colors::node_colors;
-pub use reachability::{Reach, Reachability, shares};
+pub use reachability::{shares, standing_layer};
 pub use solid_surface::solid_surface;

@@ -1,6 +1,6 @@
 //! The seed paper's figures and claims, computed.
 //!
-//! Numbers and drawings are apart: what a figure shows is plain data ([`Layer`], [`Reachability`],
+//! Numbers and drawings are apart: what a figure shows is plain data ([`Layer`], [`standing_layer`],
 //! [`dye_spectra`] …), and the feature `drawing`, on by default, draws it.
 mod claims;
 mod cubes;
@@ -21,8 +21,8 @@ mod svg;
 pub use claims::{Claim, Number, Verdict};
 pub use cubes::{Cubes, StudyCube};
 pub use data::{
-    ChromaticityDiagram, DyeSpectra, Layer, Mixing, Reach, Reachability, dye_spectra, node_colors,
-    shares, solid_surface,
+    ChromaticityDiagram, DyeSpectra, Layer, Mixing, dye_spectra, node_colors, shares,
+    solid_surface, standing_layer,
 };
 pub use error::StudyError;
 #[cfg(feature = "drawing")]

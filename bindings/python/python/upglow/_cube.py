@@ -60,7 +60,7 @@ class CubeCheck(NamedTuple):
     distance: NDArray[np.float64]
     """As in `Standing`."""
     nearest_de2000: NDArray[np.float64]
-    """CIEDE2000 to the nearest color within reach, interpolated; 0 within reach."""
+    """CIEDE2000 to the nearest color within reach; 0 within reach."""
     de2000: NDArray[np.float32]
     """CIEDE2000 of the cube's material against the color, sums over 5 nm."""
 

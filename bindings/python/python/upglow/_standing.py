@@ -32,9 +32,9 @@ class Standing(NamedTuple):
     """A `Kind` for each color; shape (...)."""
     distance: NDArray[np.float64]
     """Distance in XYZ to the nearest color of any reflectance or, where the color is unreachable, of
-    any material; interpolated, and never less than the distance itself; 0 for a reflectance."""
+    any material; 0 for a reflectance."""
     de2000: NDArray[np.float64]
-    """CIEDE2000 to that color, interpolated; 0 for a reflectance."""
+    """CIEDE2000 to that color; 0 for a reflectance."""
 
 
 @cache

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use upglow::Cube;
 use upglow_color::Contract;
-use upglow_fit::{StandingKind, Watch};
+use upglow_color::StandingKind;
+use upglow_fit::Watch;
 use upglow_image::{
     Assumed, CheckReport, CheckedPicture, Counts, Flaw, Judge, LinearPicture, Located, WorstTexel,
     check_page,
@@ -270,13 +271,13 @@ impl WorstReport {
             x: texel.x,
             y: texel.y,
             rgb: texel.rgb,
-            needs: match texel.kind {
+            needs: match texel.standing.kind {
                 StandingKind::Reflectance => "reflectance",
                 StandingKind::NeedsFluorescence => "fluorescence",
                 StandingKind::Unreachable => "nothing shows it",
             },
-            reflectance_de2000: texel.gaps.reflectance.de2000,
-            material_de2000: texel.gaps.fluorescence.de2000,
+            reflectance_de2000: texel.standing.reflectance.de2000,
+            material_de2000: texel.standing.fluorescence.de2000,
         }
     }
 }

@@ -4,9 +4,10 @@ use std::io::{IsTerminal, stdout};
 
 use upglow::{Cube, Mixture, ModelOnGrid};
 use upglow_color::{
-    Adaptation, Colorimetry, Contract, Grid, Illuminant, LinearRgb, Metric, RgbSpace, Xyz,
+    Adaptation, ColorSolids, Colorimetry, Contract, Grid, Illuminant, LinearRgb, Metric, Nearest,
+    RgbSpace, StandingKind, Xyz,
 };
-use upglow_fit::{FitOptions, Fitter, Method, Standing};
+use upglow_fit::{FitOptions, Fitter, Method};
 
 use super::color_report::{
     ColorReport, CurvesReport, Drawing, LightReport, PartReport, StandingReport,
@@ -118,15 +119,17 @@ impl<'a> Shown<'a> {
     }
 
     fn standing(&self) -> StandingReport {
-        match Standing::of(self.rgb, self.cube.contract()) {
-            Standing::Reflectance => StandingReport::Reflectance,
-            Standing::NeedsFluorescence { reflectance } => StandingReport::NeedsFluorescence {
-                reflectance_distance_xyz: reflectance.distance,
-                reflectance_de2000: self.de2000(reflectance.color),
+        let standing = ColorSolids::new(&self.colorimetry).standing(self.target);
+        let Nearest { distance, de2000, .. } = standing.beyond();
+        match standing.kind {
+            StandingKind::Reflectance => StandingReport::Reflectance,
+            StandingKind::NeedsFluorescence => StandingReport::NeedsFluorescence {
+                reflectance_distance_xyz: distance,
+                reflectance_de2000: de2000,
             },
-            Standing::Unreachable { fluorescence } => StandingReport::Unreachable {
-                fluorescence_distance_xyz: fluorescence.distance,
-                fluorescence_de2000: self.de2000(fluorescence.color),
+            StandingKind::Unreachable => StandingReport::Unreachable {
+                fluorescence_distance_xyz: distance,
+                fluorescence_de2000: de2000,
             },
         }
     }

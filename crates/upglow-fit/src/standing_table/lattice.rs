@@ -3,10 +3,9 @@
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use upglow_color::{ColorSolid, LinearRgb, Metric, Xyz};
+use upglow_color::{ColorSolid, LinearRgb, Metric, StandingKind, Xyz};
 
-use super::StandingKind;
-use super::solids::{Side, Solids, parted};
+use super::reach::{Reach, Side, parted};
 use crate::rounding::to_single;
 
 #[derive(Debug)]
@@ -44,13 +43,13 @@ pub(super) struct Mixed {
 /// What is known at a corner of boxes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Corner {
-    pub(super) reflectance: Place,
-    pub(super) fluorescence: Place,
+    pub(super) reflectance: Offset,
+    pub(super) fluorescence: Offset,
 }
 
-/// Where a point is, seen from a solid.
+/// How far a point is from a solid, and in what direction.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
+pub(super) struct Offset {
     /// 0 only well inside.
     distance: f32,
     de2000: f32,
@@ -58,7 +57,7 @@ pub(super) struct Place {
     normal: [f32; 3],
 }
 
-const WELL_INSIDE: Place = Place { distance: 0.0, de2000: 0.0, normal: [0.0; 3] };
+const INSIDE: Offset = Offset { distance: 0.0, de2000: 0.0, normal: [0.0; 3] };
 
 /// Boxes along each axis of the first lattice. More cost a search each that most pictures never
 /// use; fewer leave more colors to be looked for in divided boxes.
@@ -96,17 +95,17 @@ impl Lattice {
     }
 
     /// The box around `rgb`, which must be in the cube.
-    pub(super) fn cell(&self, rgb: LinearRgb, solids: &Solids) -> &Cell {
+    pub(super) fn cell(&self, rgb: LinearRgb, reach: &Reach) -> &Cell {
         let at = self.position(rgb).map(|(index, _)| index);
         let [r, g, b] = at;
         let index = (b * self.boxes + g) * self.boxes + r;
-        self.cells[index].get_or_init(|| self.settle(at, solids))
+        self.cells[index].get_or_init(|| self.settle(at, reach))
     }
 
     /// Distance and ΔE00 between the corners of a box that [`Lattice::cell`] was asked for.
     ///
     /// The distance from a convex body is a convex function, so the distance is not understated.
-    pub(super) fn interpolate(&self, rgb: LinearRgb, of: impl Fn(&Corner) -> Place) -> [f64; 2] {
+    pub(super) fn interpolate(&self, rgb: LinearRgb, of: impl Fn(&Corner) -> Offset) -> [f64; 2] {
         let position = self.position(rgb);
         let mut sum = [0.0; 2];
         for corner in 0..8 {
@@ -131,18 +130,18 @@ impl Lattice {
         })
     }
 
-    fn settle(&self, at: [usize; 3], solids: &Solids) -> Cell {
-        let corners = self.corners_of(at, solids);
-        let mut points = box_corners(at).map(|at| solids.colorimetry.xyz_from_rgb(self.rgb(at)));
+    fn settle(&self, at: [usize; 3], reach: &Reach) -> Cell {
+        let corners = self.corners_of(at, reach);
+        let mut points = box_corners(at).map(|at| reach.colorimetry.xyz_from_rgb(self.rgb(at)));
         let points = std::array::from_fn(|_| points.next().expect("a box has eight corners"));
-        let side = |solid: &ColorSolid, of: fn(&Corner) -> Place| {
+        let side = |solid: &ColorSolid, of: fn(&Corner) -> Offset| {
             side_of(solid, &corners.map(|c| of(&c)), &points)
         };
-        let reflectance = side(&solids.reflectance, |c| c.reflectance);
+        let reflectance = side(&reach.solids.reflectance, |c| c.reflectance);
         if reflectance == Side::Inside {
             return Cell::Settled(StandingKind::Reflectance);
         }
-        match (reflectance, side(&solids.fluorescence, |c| c.fluorescence)) {
+        match (reflectance, side(&reach.solids.fluorescence, |c| c.fluorescence)) {
             (_, Side::Outside) => Cell::Settled(StandingKind::Unreachable),
             (Side::Outside, Side::Inside) => Cell::Settled(StandingKind::NeedsFluorescence),
             _ => self.divide(at),
@@ -163,24 +162,24 @@ impl Lattice {
     }
 
     /// The kind of a color in a box that a surface passes through.
-    pub(super) fn kind_in(&self, mixed: &Mixed, rgb: LinearRgb, solids: &Solids) -> StandingKind {
+    pub(super) fn kind_in(&self, mixed: &Mixed, rgb: LinearRgb, reach: &Reach) -> StandingKind {
         let asked = mixed.asked.fetch_add(1, Ordering::Relaxed);
         if self.depth >= DEEPEST || (asked < OFTEN && mixed.parts.get().is_none()) {
-            return solids.kind(rgb);
+            return reach.kind(rgb);
         }
         let at = self.position(rgb).map(|(index, _)| index);
         let parts = mixed.parts.get_or_init(|| self.parts(at));
-        match parts.cell(rgb, solids) {
+        match parts.cell(rgb, reach) {
             Cell::Settled(kind) => *kind,
             Cell::Divided(_) => unreachable!("boxes this small are not divided at once"),
-            Cell::Mixed(mixed) => parts.kind_in(mixed, rgb, solids),
+            Cell::Mixed(mixed) => parts.kind_in(mixed, rgb, reach),
         }
     }
 
-    fn corners_of(&self, at: [usize; 3], solids: &Solids) -> [Corner; 8] {
+    fn corners_of(&self, at: [usize; 3], reach: &Reach) -> [Corner; 8] {
         let mut all = box_corners(at).map(|at| {
             *self.corners[self.corner_index(at)]
-                .get_or_init(|| Corner::measure(self.rgb(at), solids))
+                .get_or_init(|| Corner::measure(self.rgb(at), reach))
         });
         std::array::from_fn(|_| all.next().expect("a box has eight corners"))
     }
@@ -195,38 +194,38 @@ impl Lattice {
 }
 
 impl Corner {
-    fn measure(rgb: LinearRgb, solids: &Solids) -> Self {
-        let color = solids.colorimetry.xyz_from_rgb(rgb);
-        let reflectance = Place::measure(color, &solids.reflectance, solids);
+    fn measure(rgb: LinearRgb, reach: &Reach) -> Self {
+        let color = reach.colorimetry.xyz_from_rgb(rgb);
+        let reflectance = Offset::measure(color, &reach.solids.reflectance, reach);
         // Every reflectance is a fluorescent material that does not fluoresce.
         let fluorescence = if reflectance.distance == 0.0 {
-            WELL_INSIDE
+            INSIDE
         } else {
-            Place::measure(color, &solids.fluorescence, solids)
+            Offset::measure(color, &reach.solids.fluorescence, reach)
         };
         Self { reflectance, fluorescence }
     }
 }
 
-impl Place {
-    fn measure(color: Xyz, solid: &ColorSolid, solids: &Solids) -> Self {
+impl Offset {
+    fn measure(color: Xyz, solid: &ColorSolid, reach: &Reach) -> Self {
         // No nearer than the color itself, for the way from the middle leads outward.
-        let further = solids.further_out(color);
+        let further = reach.further_out(color);
         let nearest = solid.nearest(further);
         if nearest.distance == 0.0 {
-            return WELL_INSIDE;
+            return INSIDE;
         }
-        let de2000 = Metric::De2000.distance(&solids.colorimetry, color, nearest.color);
-        let normal = [0, 1, 2].map(|k| (further.0[k] - nearest.color.0[k]) / nearest.distance);
+        let de2000 = Metric::De2000.distance(&reach.colorimetry, color, nearest.color);
+        let normal = (further - nearest.color) / nearest.distance;
         Self {
             distance: rounded_up(nearest.distance),
             de2000: rounded_up(de2000),
-            normal: normal.map(rounded_up),
+            normal: normal.0.map(rounded_up),
         }
     }
 }
 
-fn side_of(solid: &ColorSolid, corners: &[Place; 8], points: &[Xyz; 8]) -> Side {
+fn side_of(solid: &ColorSolid, corners: &[Offset; 8], points: &[Xyz; 8]) -> Side {
     if corners.iter().all(|corner| corner.distance == 0.0) {
         return Side::Inside;
     }

@@ -1,8 +1,8 @@
 //! Values that no cube holds, and colors that no material shows, made into ones that can be baked.
 
 use rayon::prelude::*;
-use upglow_color::{LinearRgb, choices};
-use upglow_fit::{StandingKind, StandingTable};
+use upglow_color::{LinearRgb, StandingKind, choices};
+use upglow_fit::StandingTable;
 
 use crate::rounding::to_single;
 
@@ -134,7 +134,7 @@ fn nearest(rgb: [f32; 3], table: &StandingTable) -> [f32; 3] {
         return rgb.map(clipped);
     }
     // Of a color within reach this is the color itself.
-    let found = table.gaps(LinearRgb(rgb.map(f64::from))).fluorescence.nearest;
+    let found = table.standing(LinearRgb(rgb.map(f64::from))).fluorescence.color;
     let found = table.colorimetry().rgb_from_xyz(found).0.map(|v| v.clamp(0.0, 1.0));
     let gray = found.iter().sum::<f64>() / 3.0;
     let towards_gray = |share: f64| found.map(|v| to_single(v + share * (gray - v)));

@@ -10,7 +10,7 @@ use super::palette::{Heat, place};
 use super::{CheckReport, CubeOpinion, Flaw, Raster, WorstTexel};
 use style::STYLE;
 use text::{escaped, grouped, percent, plural, value};
-use upglow_fit::{Gap, StandingKind};
+use upglow_color::{Nearest, StandingKind};
 
 /// A picture and what was found.
 #[derive(Clone, Copy, Debug)]
@@ -268,11 +268,11 @@ fn worst_row(texel: &WorstTexel) -> String {
     let [asked, reflectance, any] = texel.swatches.map(hex);
     let swatch =
         |color: &str| format!("<span class=\"swatch\" style=\"background:{color}\"></span>");
-    let beside = |gap: &Gap| match gap.distance {
+    let beside = |nearest: &Nearest| match nearest.distance {
         0.0 => "shown".into(),
-        _ => format!("{:.2}", gap.de2000),
+        _ => format!("{:.2}", nearest.de2000),
     };
-    let class = match texel.kind {
+    let class = match texel.standing.kind {
         StandingKind::Unreachable => "unreachable",
         _ => "fluorescence",
     };
@@ -283,9 +283,9 @@ fn worst_row(texel: &WorstTexel) -> String {
         texel.y,
         swatch(&asked),
         swatch(&reflectance),
-        beside(&texel.gaps.reflectance),
+        beside(&texel.standing.reflectance),
         swatch(&any),
-        beside(&texel.gaps.fluorescence),
+        beside(&texel.standing.fluorescence),
     )
 }
 

@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use rayon::prelude::*;
-use upglow_color::LinearRgb;
-use upglow_fit::{Estimate, StandingKind};
+use upglow_color::{LinearRgb, StandingKind};
+use upglow_fit::Estimate;
 
 use super::display::Display;
 use super::palette::Heat;

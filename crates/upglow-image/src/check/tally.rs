@@ -2,7 +2,8 @@
 
 use std::cmp::Ordering;
 
-use upglow_fit::{Estimate, StandingKind};
+use upglow_color::StandingKind;
+use upglow_fit::Estimate;
 
 use super::opinion::OpinionTally;
 use super::ranking::{Ranked, Ranking};

@@ -1,11 +1,11 @@
 //! Figure 10: what any material can show.
 
-use upglow_color::Contract;
+use upglow_color::{Contract, StandingKind};
 
 use super::sheet::{Sheet, swatch};
 use super::{Figure, Studio, percent};
 use crate::svg::{Axis, Drawing, Frame, Rect, STANDINGS, Text, hex};
-use crate::{Reach, Reachability, StudyError, raster, shares};
+use crate::{StudyError, raster, shares, standing_layer};
 
 /// The layers shown, in 31sts, and what is written above them.
 const BLUES: [(f64, &str); 5] =
@@ -16,7 +16,7 @@ const NAMES: [&str; 3] = ["some reflectance", "only fluorescence", "no material"
 const POINTS_PER_STEP: usize = 4;
 
 pub(super) fn figure_10(studio: &Studio<'_>) -> Result<Figure, StudyError> {
-    let limits = Reachability::of(&Contract::default());
+    let contract = Contract::default();
     let nodes = studio.cubes.resolution();
     let side = POINTS_PER_STEP * (nodes - 1) + 1;
     let sheet =
@@ -25,14 +25,15 @@ pub(super) fn figure_10(studio: &Studio<'_>) -> Result<Figure, StudyError> {
     let mut parts = Vec::new();
     for (i, (blue, name)) in BLUES.into_iter().enumerate() {
         studio.go_on()?;
-        let standings = limits.layer(blue / 31.0, side);
+        let standings = standing_layer(&contract, blue / 31.0, side);
         let found = shares(&standings).map(percent);
         let title = format!("[{}] *B* = {name}", LETTERS[i]);
         draw_layer(&mut drawing, &sheet, i, &standings, &title);
         parts.push(format!("B = {name}: {} / {} / {}", found[0], found[1], found[2]));
     }
-    let layers: Vec<Vec<Reach>> =
-        (0..nodes).map(|blue| limits.layer(blue as f64 / (nodes - 1) as f64, nodes)).collect();
+    let layers: Vec<Vec<StandingKind>> = (0..nodes)
+        .map(|blue| standing_layer(&contract, blue as f64 / (nodes - 1) as f64, nodes))
+        .collect();
     draw_shares(&mut drawing, sheet.rect(1, 2), &layers);
     let all = shares(layers.iter().flatten()).map(percent);
     draw_legend(&mut drawing, &sheet, &all);
@@ -56,7 +57,7 @@ fn draw_layer(
     drawing: &mut Drawing,
     sheet: &Sheet,
     index: usize,
-    standings: &[Reach],
+    standings: &[StandingKind],
     title: &str,
 ) {
     let (row, column) = (index / sheet.columns, index % sheet.columns);
@@ -73,7 +74,7 @@ fn draw_layer(
 }
 
 /// Shares over blue, one area above the other.
-fn draw_shares(drawing: &mut Drawing, rect: Rect, layers: &[Vec<Reach>]) {
+fn draw_shares(drawing: &mut Drawing, rect: Rect, layers: &[Vec<StandingKind>]) {
     let frame = Frame {
         rect,
         x: Axis::every("blue *B*", [0.0, 1.0], 0.25),

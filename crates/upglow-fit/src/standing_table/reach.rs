@@ -1,15 +1,13 @@
 //! What reflectances and what fluorescent materials show under one contract, and proofs for boxes.
 
-use upglow_color::{ColorSolid, Colorimetry, Contract, Grid, LinearRgb, Xyz};
-
-use super::StandingKind;
-use crate::Standing;
+use upglow_color::{
+    ColorSolid, ColorSolids, Colorimetry, Contract, Grid, LinearRgb, StandingKind, Xyz,
+};
 
 #[derive(Debug)]
-pub(super) struct Solids {
+pub(super) struct Reach {
     pub(super) colorimetry: Colorimetry,
-    pub(super) reflectance: ColorSolid,
-    pub(super) fluorescence: ColorSolid,
+    pub(super) solids: ColorSolids,
     /// Half of white, deep inside both solids.
     middle: Xyz,
 }
@@ -33,44 +31,23 @@ const WELL_INSIDE: f64 = 1e-6;
 /// A box is well outside if a plane parts it from the solid by this much in XYZ; for the same reason.
 const WELL_OUTSIDE: f64 = 1e-7;
 
-impl Solids {
+impl Reach {
     pub(super) fn new(contract: &Contract) -> Self {
         let colorimetry = contract.on(Grid::FIT);
-        let reflectance = ColorSolid::reflectance(&colorimetry);
-        let fluorescence = ColorSolid::fluorescence(&colorimetry);
-        let middle = Xyz(colorimetry.white().0.map(|v| v / 2.0));
-        Self { colorimetry, reflectance, fluorescence, middle }
+        let solids = ColorSolids::new(&colorimetry);
+        let middle = colorimetry.white() / 2.0;
+        Self { colorimetry, solids, middle }
     }
 
-    /// [`Standing::of`], with what the contract has in common for all colors computed once.
-    pub(super) fn standing(&self, rgb: LinearRgb) -> Standing {
-        let color = self.colorimetry.xyz_from_rgb(rgb);
-        if self.reflectance.contains(color) {
-            return Standing::Reflectance;
-        }
-        if self.fluorescence.contains(color) {
-            return Standing::NeedsFluorescence { reflectance: self.reflectance.nearest(color) };
-        }
-        Standing::Unreachable { fluorescence: self.fluorescence.nearest(color) }
-    }
-
-    /// The kind of [`Standing::of`], without the distance.
+    /// What it takes to show `rgb`, by search.
     pub(super) fn kind(&self, rgb: LinearRgb) -> StandingKind {
-        let color = self.colorimetry.xyz_from_rgb(rgb);
-        if self.reflectance.contains(color) {
-            return StandingKind::Reflectance;
-        }
-        if self.fluorescence.contains(color) {
-            return StandingKind::NeedsFluorescence;
-        }
-        StandingKind::Unreachable
+        self.solids.kind(self.colorimetry.xyz_from_rgb(rgb))
     }
 
     /// The color a little further from the middle of both solids: where a solid holds it, it holds
     /// some room around `color`.
     pub(super) fn further_out(&self, color: Xyz) -> Xyz {
-        let middle = self.middle.0;
-        Xyz([0, 1, 2].map(|k| color.0[k] + WELL_INSIDE * (color.0[k] - middle[k])))
+        color + WELL_INSIDE * (color - self.middle)
     }
 }
 
