@@ -12,6 +12,7 @@ mod check;
 mod layers;
 mod llvm;
 mod mitsuba;
+mod outputs;
 mod python;
 mod python_wheel;
 mod readme;
@@ -26,7 +27,12 @@ usage: cargo xtask tables          write crates/upglow-color/src/tables from tab
                                    and CMake below DIR
        cargo xtask test-c          run the checks of the C library
        cargo xtask test-python     build the Python package's wheel and run its tests
-       cargo xtask test-mitsuba    build the plugins for Mitsuba 3 and run their tests";
+       cargo xtask test-mitsuba    build the plugins for Mitsuba 3 and run their tests
+       cargo xtask outputs PROGRAM FOLDER [--study PROGRAM] [--against OLDFOLDER]
+                                   make every product of an `upglow` executable in the new
+                                   FOLDER, at small sizes, and print the SHA-256 of each; --study draws the
+                                   figures with another executable; --against says which
+                                   products differ from those in OLDFOLDER";
 
 /// Exit status on bad usage; 1 is a check that failed.
 const BAD_USAGE: u8 = 2;
@@ -42,6 +48,7 @@ fn main() -> ExitCode {
         ["test-c"] => check::run_steps(root, c_library::STEPS),
         ["test-python"] => check::run_steps(root, python_wheel::STEPS),
         ["test-mitsuba"] => check::run_steps(root, mitsuba::STEPS_WITH_PACKAGE),
+        ["outputs", program, folder, ref options @ ..] => outputs(program, folder, options),
         ["check"] => check::run(root, check::Tests::Quick),
         ["check", "--slow"] => check::run(root, check::Tests::QuickAndSlow),
         _ => {
@@ -83,6 +90,24 @@ fn install_c(root: &Path, prefix: &Path) -> ExitCode {
         }
         Err(error) => fail(&error),
     }
+}
+
+fn outputs(program: &str, folder: &str, mut options: &[&str]) -> ExitCode {
+    let (mut study, mut against) = (program, None);
+    while let [option, value, rest @ ..] = options {
+        match *option {
+            "--study" => study = value,
+            "--against" => against = Some(Path::new(value)),
+            _ => break,
+        }
+        options = rest;
+    }
+    if !options.is_empty() {
+        eprintln!("{USAGE}");
+        return ExitCode::from(BAD_USAGE);
+    }
+    let [program, folder, study] = [program, folder, study].map(Path::new);
+    outputs::run(program, folder, study, against).unwrap_or_else(|error| fail(&error))
 }
 
 fn fail(error: &dyn std::error::Error) -> ExitCode {
