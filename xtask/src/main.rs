@@ -9,6 +9,7 @@ use std::process::ExitCode;
 mod bench;
 mod c_library;
 mod check;
+mod count;
 mod layers;
 mod llvm;
 mod mitsuba;
@@ -28,6 +29,8 @@ usage: cargo xtask tables          write crates/upglow-color/src/tables from tab
        cargo xtask test-c          run the checks of the C library
        cargo xtask test-python     build the Python package's wheel and run its tests
        cargo xtask test-mitsuba    build the plugins for Mitsuba 3 and run their tests
+       cargo xtask count [FOLDER]  count source lines, public names and the program's crates, here or
+                                   in another checkout
        cargo xtask outputs PROGRAM FOLDER [--study PROGRAM] [--against OLDFOLDER]
                                    make every product of an `upglow` executable in the new
                                    FOLDER, at small sizes, and print the SHA-256 of each; --study draws the
@@ -48,6 +51,8 @@ fn main() -> ExitCode {
         ["test-c"] => check::run_steps(root, c_library::STEPS),
         ["test-python"] => check::run_steps(root, python_wheel::STEPS),
         ["test-mitsuba"] => check::run_steps(root, mitsuba::STEPS_WITH_PACKAGE),
+        ["count"] => count(root),
+        ["count", folder] => count(Path::new(folder)),
         ["outputs", program, folder, ref options @ ..] => outputs(program, folder, options),
         ["check"] => check::run(root, check::Tests::Quick),
         ["check", "--slow"] => check::run(root, check::Tests::QuickAndSlow),
@@ -86,6 +91,16 @@ fn install_c(root: &Path, prefix: &Path) -> ExitCode {
     match c_library::install(root, prefix) {
         Ok(installed) => {
             println!("install-c: {}, {}", installed.include.display(), installed.lib.display());
+            ExitCode::SUCCESS
+        }
+        Err(error) => fail(&error),
+    }
+}
+
+fn count(folder: &Path) -> ExitCode {
+    match count::count(folder) {
+        Ok(count) => {
+            println!("{count}");
             ExitCode::SUCCESS
         }
         Err(error) => fail(&error),
