@@ -7,7 +7,9 @@ use upglow_color::{Contract, Grid, Illuminant};
 
 use crate::cube::UpglowCube;
 use crate::failure::{Failure, UpglowStatus, guarded};
-use crate::pointer::{Output, borrowed, refuse_overlap, slice, slice_mut, text};
+use crate::pointer::{
+    Output, assert_shared_by_threads, borrowed, destroy, refuse_overlap, slice, slice_mut, text,
+};
 
 /// The colors that the materials of a cube have under one light. It never changes: any number of
 /// threads may use it at once. It does not need its cube any more.
@@ -16,9 +18,7 @@ pub struct UpglowColors {
     table: ColorTable,
 }
 
-/// Threads share colors.
-const fn shared_by_threads<T: Send + Sync>() {}
-const _: () = shared_by_threads::<UpglowColors>();
+const _: () = assert_shared_by_threads::<UpglowColors>();
 
 /// Computes the colors of a cube's materials under a light: "D65", "D60", "D55", "D50", "A" or "E",
 /// or under the cube's own if `illuminant` is null.
@@ -110,13 +110,8 @@ impl UpglowColors {
 /// not destroyed before.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn upglow_colors_destroy(colors: *mut UpglowColors) {
-    guarded(|| {
-        if !colors.is_null() {
-            // SAFETY: it came from `Box::into_raw`, once, and the caller gives it back.
-            drop(unsafe { Box::from_raw(colors) });
-        }
-        Ok(())
-    });
+    // SAFETY: the caller keeps this function's promise, which is the same.
+    unsafe { destroy(colors) };
 }
 
 /// X, Y and Z of the materials of `count` colors, as the cube's observer sees them; Y of the perfect

@@ -6,7 +6,7 @@ use std::path::Path;
 use upglow::{Cube, LookupTable};
 
 use crate::failure::{Failure, UpglowStatus, guarded};
-use crate::pointer::{Output, borrowed, slice, text};
+use crate::pointer::{Output, assert_shared_by_threads, borrowed, destroy, slice, text};
 
 /// A cube of materials for all colors of an RGB space. It never changes: any number of threads may
 /// use it at once.
@@ -55,9 +55,7 @@ pub struct UpglowCubeFacts {
     pub header_json: *const c_char,
 }
 
-/// Threads share cubes.
-const fn shared_by_threads<T: Send + Sync>() {}
-const _: () = shared_by_threads::<UpglowCube>();
+const _: () = assert_shared_by_threads::<UpglowCube>();
 
 impl UpglowCube {
     fn new(cube: Cube) -> Box<Self> {
@@ -174,13 +172,8 @@ pub unsafe extern "C" fn upglow_cube_from_memory(
 /// destroyed before.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn upglow_cube_destroy(cube: *mut UpglowCube) {
-    guarded(|| {
-        if !cube.is_null() {
-            // SAFETY: it came from `Box::into_raw`, once, and the caller gives it back.
-            drop(unsafe { Box::from_raw(cube) });
-        }
-        Ok(())
-    });
+    // SAFETY: the caller keeps this function's promise, which is the same.
+    unsafe { destroy(cube) };
 }
 
 /// What a cube says of itself. The texts last as long as the cube.

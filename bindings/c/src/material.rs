@@ -6,7 +6,9 @@ use upglow::{Bispectral, PackedMixture};
 
 use crate::cube::UpglowCube;
 use crate::failure::{Failure, UpglowStatus, guarded};
-use crate::pointer::{Output, array, borrowed, refuse_overlap, slice, slice_mut};
+use crate::pointer::{
+    Output, array, assert_shared_by_threads, borrowed, refuse_overlap, slice, slice_mut,
+};
 
 /// The material of one color, in memory of the caller's own: on the stack, in an array, in another
 /// struct. Nothing is allocated for it and nothing is to be freed. It may be copied.
@@ -34,9 +36,7 @@ const MARK: u64 = 0x7567_6c6f_775f_6d31;
 const _: () = assert!(size_of::<Filled<'_>>() <= size_of::<UpglowMaterial>());
 const _: () = assert!(align_of::<Filled<'_>>() <= align_of::<UpglowMaterial>());
 
-/// Threads share materials.
-const fn shared_by_threads<T: Send + Sync>() {}
-const _: () = shared_by_threads::<Filled<'_>>();
+const _: () = assert_shared_by_threads::<Filled<'_>>();
 
 /// # Safety
 ///

@@ -3,7 +3,7 @@
 use std::ffi::{CStr, c_char};
 use std::ptr::NonNull;
 
-use crate::failure::Failure;
+use crate::failure::{Failure, UpglowStatus, guarded};
 
 fn checked<T>(pointer: *const T, argument: &'static str) -> Result<NonNull<T>, Failure> {
     let checked = NonNull::new(pointer.cast_mut()).ok_or(Failure::Null { argument })?;
@@ -152,6 +152,24 @@ impl<T> Output<T> {
         unsafe { self.0.write(value) };
     }
 }
+
+/// Frees what `Box::into_raw` made; null does nothing. The status of a call that does no more.
+///
+/// # Safety
+///
+/// The pointer is null or came from `Box::into_raw`, was not freed before, and nobody uses it.
+pub(crate) unsafe fn destroy<T>(pointer: *mut T) -> UpglowStatus {
+    guarded(|| {
+        if !pointer.is_null() {
+            // SAFETY: the caller's promise.
+            drop(unsafe { Box::from_raw(pointer) });
+        }
+        Ok(())
+    })
+}
+
+/// Compiles where threads may share a `T`.
+pub(crate) const fn assert_shared_by_threads<T: Send + Sync>() {}
 
 #[cfg(test)]
 mod tests {

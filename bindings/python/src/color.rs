@@ -4,13 +4,14 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
 use rayon::prelude::*;
 use upglow::ColorTable;
-use upglow_color::{Colorimetry, Contract, Grid, LinearRgb, Metric, Xyz};
+use upglow_color::{Colorimetry, Contract, Grid, LinearRgb, Metric, Xyz, choices};
 
+use crate::arrays::{Number, fill, single_rows, to_single};
 use crate::cube::Cube;
 use crate::errors::value_error;
 use crate::illuminant::Illuminant;
-use crate::rows::{Number, fill, single_rows, to_single};
 use crate::threads::on_threads;
+use crate::word::Word;
 
 /// The colors of a cube's materials under one light.
 #[pyclass(frozen, module = "upglow._upglow")]
@@ -20,16 +21,25 @@ pub(crate) struct Colors {
     colorimetry: Colorimetry,
 }
 
-/// The colors of a cube's materials under `light`, or under its own; `scale` is `white` (white is
-/// Y = 1 under any light) or `power` (as much power as the cube's own light); sums are over 1 or
-/// 5 nm.
+/// What a light is scaled to.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Scale {
+    /// White is Y = 1 under any light.
+    White,
+    /// The light has as much power as the cube's own.
+    Power,
+}
+
+choices!(Scale, "scale", White = "white", Power = "power");
+
+/// The colors of a cube's materials under `light`, or under its own; sums are over 1 or 5 nm.
 #[pyfunction]
 #[pyo3(signature = (cube, light, scale, step_nm))]
 pub(crate) fn colors(
     py: Python<'_>,
     cube: &Cube,
     light: Option<&Illuminant>,
-    scale: &str,
+    scale: Word<Scale>,
     step_nm: u32,
 ) -> PyResult<Colors> {
     let grid = match step_nm {
@@ -39,15 +49,14 @@ pub(crate) fn colors(
     };
     let contract = cube.cube.contract();
     let own = || contract.on(grid);
-    let colorimetry = match (light, scale) {
-        (None, "white" | "power") => own(),
-        (Some(light), "white") => {
+    let colorimetry = match (light, scale.0) {
+        (None, _) => own(),
+        (Some(light), Scale::White) => {
             let contract = Contract { illuminant: light.0.clone(), ..contract.clone() };
             contract.check().map_err(value_error)?;
             contract.on(grid)
         }
-        (Some(light), "power") => own().relit(&contract.observer, &light.0),
-        _ => return Err(value_error(format_args!("scale {scale:?}, expected white or power"))),
+        (Some(light), Scale::Power) => own().relit(&contract.observer, &light.0),
     };
     Ok(py.detach(|| Colors { table: cube.cube.color_table(&colorimetry), colorimetry }))
 }

@@ -4,12 +4,13 @@ use std::sync::OnceLock;
 
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
-use upglow_color::{Colorimetry, Grid, RgbSpace};
+use upglow_color::{Adaptation, Colorimetry, Grid, RgbSpace};
 use upglow_fit::StandingTable;
 
 use crate::errors::value_error;
 use crate::illuminant::Illuminant;
 use crate::observer::Observer;
+use crate::word::Word;
 
 /// RGB space, illuminant, observer and chromatic adaptation.
 #[pyclass(frozen, module = "upglow._upglow")]
@@ -47,7 +48,7 @@ impl Contract {
         space: Space,
         illuminant: &Illuminant,
         observer: &Observer,
-        adaptation: &str,
+        adaptation: Word<Adaptation>,
     ) -> PyResult<Self> {
         let space = match space {
             Space::Name(name) => RgbSpace::named(&name),
@@ -59,7 +60,7 @@ impl Contract {
             space: space.map_err(value_error)?,
             illuminant: illuminant.0.clone(),
             observer: observer.0.clone(),
-            adaptation: adaptation.parse().map_err(value_error)?,
+            adaptation: adaptation.0,
         };
         contract.check().map_err(value_error)?;
         Ok(Self::of(contract))

@@ -3,15 +3,15 @@
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
-use numpy::PyArray3;
+use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
-use upglow::{LookupTable, Model, ReadCubeError, WriteCubeError};
+use upglow::{DyeCurves, LookupTable, Model, ReadCubeError, WriteCubeError};
 use upglow_fit::CubeSummary;
 
 use crate::contract::Contract;
 use crate::errors::{file_error, os_error, value_error};
-use crate::materials::{Arrays, arrays};
+use crate::nodes::{Arrays, arrays};
 
 /// One material for each node of a grid over RGB.
 #[pyclass(frozen, module = "upglow._upglow")]
@@ -24,6 +24,14 @@ pub(crate) struct Cube {
 impl Cube {
     pub(crate) fn of(cube: upglow::Cube) -> Self {
         Self { cube, table: OnceLock::new() }
+    }
+
+    /// Empty where the model has no dyes.
+    fn dyes(&self) -> &[DyeCurves] {
+        match self.cube.model() {
+            Model::Dyes(model) => model.curves(),
+            _ => &[],
+        }
     }
 
     /// The cube compiled for look-ups in single precision.
@@ -92,17 +100,28 @@ impl Cube {
         arrays(py, self.cube.nodes())
     }
 
+    /// Every node in the packed layout of `docs/cube-format.md`, `[node][8]`.
+    fn packed_nodes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let nodes = self.cube.packed_nodes();
+        let count = nodes.len();
+        let numbers = nodes.flat_map(|node| node.reflectance.into_iter().chain(node.fluorescence));
+        PyArray1::from_iter(py, numbers).reshape([count, 8])
+    }
+
     /// Absorption, then emission (1/nm) of each dye as the model uses it,
     /// `[dye][absorption emission][wavelength]`, 300 to 830 nm by 1 nm.
     fn dye_curves<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
-        let curves = match self.cube.model() {
-            Model::Dyes(model) => model.curves(),
-            _ => &[],
-        };
-        let pair = |dye: &upglow::DyeCurves| {
+        let pair = |dye: &DyeCurves| {
             vec![dye.absorption.values().to_vec(), dye.emission.values().to_vec()]
         };
-        Ok(PyArray3::from_vec3(py, &curves.iter().map(pair).collect::<Vec<_>>())?)
+        Ok(PyArray3::from_vec3(py, &self.dyes().iter().map(pair).collect::<Vec<_>>())?)
+    }
+
+    /// Quantum yield and mean emission (nm) of each dye, `[dye][2]`.
+    fn dye_numbers<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let dyes = self.dyes();
+        let numbers = dyes.iter().flat_map(|dye| [dye.quantum_yield, dye.mean_emission_nm]);
+        PyArray1::from_iter(py, numbers).reshape([dyes.len(), 2])
     }
 
     /// How well the nodes match their colors.

@@ -2,8 +2,8 @@
 
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
-use upglow::{FeatureError, Features};
-use upglow_color::{ColorSolid, Grid, Lab, Xyz};
+use upglow::{FeatureError, Features, Interpolation};
+use upglow_color::{ColorSolid, Grid, Lab, Xyz, choices};
 use upglow_study::{ChromaticityDiagram, Layer, Mixing, standing_layer};
 
 use crate::contract::Contract;
@@ -12,6 +12,7 @@ use crate::errors::value_error;
 use crate::model::Model;
 use crate::observer::Observer;
 use crate::threads::on_threads;
+use crate::word::Word;
 
 /// Most points along one axis of an array: more are a typing error, they would fill the memory.
 const MOST_POINTS: usize = 2048;
@@ -92,16 +93,15 @@ pub(crate) fn layer<'py>(
     cube: &Cube,
     blue: f64,
     side: Option<usize>,
-    interpolation: &str,
+    interpolation: Word<Interpolation>,
     threads: Option<usize>,
 ) -> PyResult<LayerArrays<'py>> {
     check_blue(blue)?;
     check_points("side", side.unwrap_or(cube.cube.resolution()))?;
-    let interpolation = interpolation.parse().map_err(value_error)?;
     let cube = &cube.cube;
     let make = || match side {
         None => Layer::of_nodes(cube, Layer::nearest_node(cube.resolution(), blue)),
-        Some(side) => Layer::between_nodes(cube, blue, side, interpolation),
+        Some(side) => Layer::between_nodes(cube, blue, side, interpolation.0),
     };
     let layer = py.detach(|| on_threads(threads, make))?;
     Ok((
@@ -158,6 +158,15 @@ pub(crate) fn reachability<'py>(
     Ok(PyArray1::from_iter(py, layer.iter().map(|&kind| kind as u8)))
 }
 
+/// What materials a solid of colors is of.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Materials {
+    Reflectance,
+    Fluorescence,
+}
+
+choices!(Materials, "materials", Reflectance = "reflectance", Fluorescence = "fluorescence");
+
 /// X, Y, Z and L*, a*, b* of points on the surface of the solid of all reflectances, or of all
 /// fluorescent materials: `[polar · azimuth][3]`, `steps` + 1 by 2 · `steps` + 1.
 #[pyfunction]
@@ -165,19 +174,15 @@ pub(crate) fn reachability<'py>(
 pub(crate) fn solid_surface<'py>(
     py: Python<'py>,
     contract: &Contract,
-    materials: &str,
+    materials: Word<Materials>,
     steps: usize,
     threads: Option<usize>,
 ) -> PyResult<(Rows<'py>, Rows<'py>)> {
     check_points("steps", steps)?;
     let colorimetry = &contract.colorimetry;
-    let solid = match materials {
-        "reflectance" => ColorSolid::reflectance(colorimetry),
-        "fluorescence" => ColorSolid::fluorescence(colorimetry),
-        _ => {
-            let expected = "expected reflectance or fluorescence";
-            return Err(value_error(format_args!("unknown materials {materials:?}, {expected}")));
-        }
+    let solid = match materials.0 {
+        Materials::Reflectance => ColorSolid::reflectance(colorimetry),
+        Materials::Fluorescence => ColorSolid::fluorescence(colorimetry),
     };
     let surface: Vec<Xyz> =
         py.detach(|| on_threads(threads, || upglow_study::solid_surface(&solid, steps)))?;

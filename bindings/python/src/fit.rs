@@ -5,31 +5,22 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use rayon::prelude::*;
-use upglow::Node;
-use upglow_color::LinearRgb;
+use upglow::{FitRecord, Node};
+use upglow_color::{LinearRgb, Metric};
 use upglow_fit::{FitOptions, Fitter, Method, Progress, Watch, build_cube};
 
+use crate::arrays::triples;
 use crate::contract::Contract;
 use crate::cube::Cube;
 use crate::errors::value_error;
-use crate::materials::{Arrays, arrays};
 use crate::model::Model;
-use crate::rows::triples;
+use crate::nodes::{Arrays, arrays};
 use crate::threads::on_threads;
 use crate::watch::{Watcher, watched};
+use crate::word::Word;
 
 /// Metric, slope limit (1/nm), method, sweeps as they are given.
-type Options = (String, Option<f64>, String, Option<u32>);
-
-fn options((metric, slope_max_per_nm, method, sweeps): Options) -> PyResult<FitOptions> {
-    let method: Method = method.parse().map_err(value_error)?;
-    Ok(FitOptions {
-        metric: metric.parse().map_err(value_error)?,
-        slope_max_per_nm,
-        sweeps: sweeps.unwrap_or(method.default_sweeps()),
-        method,
-    })
-}
+type Options = (Word<Metric>, Option<f64>, Word<Method>, Option<u32>);
 
 /// Fits a material for every node of a cube.
 #[pyfunction]
@@ -43,7 +34,9 @@ pub(crate) fn build(
     threads: Option<usize>,
     report: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Cube> {
-    let options = self::options(options)?;
+    let (Word(metric), slope_max_per_nm, Word(method), sweeps) = options;
+    let sweeps = sweeps.unwrap_or(method.default_sweeps());
+    let options = FitOptions { metric, slope_max_per_nm, method, sweeps };
     let built = watched(py, report, |watcher| {
         on_threads(threads, || {
             build_cube(&contract.contract, &model.0, options, resolution, watcher)
@@ -62,9 +55,13 @@ pub(crate) fn fit<'py>(
     threads: Option<usize>,
     report: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Arrays<'py>> {
-    let record = cube.cube.fit().clone();
-    let options = (record.metric, record.slope_max_per_nm, record.method, Some(record.sweeps));
-    let options = self::options(options)?;
+    let FitRecord { metric, slope_max_per_nm, method, sweeps, .. } = cube.cube.fit();
+    let options = FitOptions {
+        metric: metric.parse().map_err(value_error)?,
+        slope_max_per_nm: *slope_max_per_nm,
+        method: method.parse().map_err(value_error)?,
+        sweeps: *sweeps,
+    };
     let rgb = triples(rgb.as_slice()?);
     let fitted = watched(py, report, |watcher| {
         let fitter = Fitter::new(cube.cube.contract(), cube.cube.model(), options);

@@ -1,6 +1,6 @@
 //! Lights.
 
-use numpy::PyArray1;
+use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 use upglow_color::Grid;
 
@@ -33,8 +33,13 @@ impl Illuminant {
 
     /// The light with these samples; wavelengths are nm.
     #[staticmethod]
-    fn from_samples(name: &str, wavelengths_nm: Vec<f64>, power: Vec<f64>) -> PyResult<Self> {
-        upglow_color::Illuminant::from_samples(name, &wavelengths_nm, &power)
+    fn from_samples(
+        name: &str,
+        wavelengths_nm: PyReadonlyArray1<'_, f64>,
+        power: PyReadonlyArray1<'_, f64>,
+    ) -> PyResult<Self> {
+        let (nm, power) = (wavelengths_nm.as_slice()?, power.as_slice()?);
+        upglow_color::Illuminant::from_samples(name, nm, power)
             .map(Self)
             .map_err(|error| value_error(format_args!("{name}: {error}")))
     }

@@ -7,6 +7,7 @@
 //! Out of scope: shapes, names of files, and what Python programs read. That is
 //! `python/upglow`, which is the package's public half.
 
+mod arrays;
 mod color;
 mod contract;
 mod cube;
@@ -16,14 +17,16 @@ mod fit;
 mod illuminant;
 mod materials;
 mod model;
+mod nodes;
 mod observer;
+mod questions;
 mod rows;
-mod sampling;
 mod spectra;
 mod standing;
 mod threads;
 mod verify;
 mod watch;
+mod word;
 
 use pyo3::pymodule;
 
@@ -31,36 +34,25 @@ use pyo3::pymodule;
 #[pymodule]
 mod _upglow {
     #[pymodule_export]
-    use crate::color::{Colors, colors};
-    #[pymodule_export]
-    use crate::contract::Contract;
-    #[pymodule_export]
-    use crate::cube::Cube;
-    #[pymodule_export]
-    use crate::figures::{
-        chromaticity_diagram, dye_spectra, layer, mixed_reflectances, node_colors, reachability,
-        solid_surface,
+    use crate::{
+        color::{Colors, colors},
+        contract::Contract,
+        cube::Cube,
+        figures::{
+            chromaticity_diagram, dye_spectra, layer, mixed_reflectances, node_colors,
+            reachability, solid_surface,
+        },
+        fit::{build, fit},
+        illuminant::Illuminant,
+        materials::{corners, polish},
+        model::{DyeSet, Model},
+        observer::Observer,
+        questions::answer,
+        rows::first_outside,
+        spectra::{reradiation_matrix, spectrum},
+        standing::standing,
+        verify::verify,
     };
-    #[pymodule_export]
-    use crate::fit::{build, fit};
-    #[pymodule_export]
-    use crate::illuminant::Illuminant;
-    #[pymodule_export]
-    use crate::materials::{corners, polish};
-    #[pymodule_export]
-    use crate::model::{DyeSet, Model};
-    #[pymodule_export]
-    use crate::observer::Observer;
-    #[pymodule_export]
-    use crate::rows::first_outside;
-    #[pymodule_export]
-    use crate::sampling::{elastic_probability, pdf_per_nm, sample};
-    #[pymodule_export]
-    use crate::spectra::{albedo, reflectance, reradiation, reradiation_matrix};
-    #[pymodule_export]
-    use crate::standing::standing;
-    #[pymodule_export]
-    use crate::verify::verify;
 
     /// Version of the package.
     #[pymodule_export]

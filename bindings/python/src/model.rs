@@ -3,10 +3,11 @@
 use std::path::PathBuf;
 
 use pyo3::prelude::*;
-use upglow::{AnalyticModel, DyeModel, DyeOptions, DyeSetError, QuantumYield};
+use upglow::{Accounting, AnalyticModel, DyeModel, DyeOptions, DyeSetError, Mixing, QuantumYield};
 use upglow_color::{MeasuredDye, dye_set_names};
 
 use crate::errors::{os_error, value_error};
+use crate::word::Word;
 
 /// A ring of measured dyes.
 #[pyclass(frozen, module = "upglow._upglow")]
@@ -98,11 +99,10 @@ impl Model {
     fn analytic(
         absorption_fwhm_nm: f64,
         emission_fwhm_nm: f64,
-        accounting: &str,
+        accounting: Word<Accounting>,
         quantum_yield: f64,
     ) -> PyResult<Self> {
-        let accounting = accounting.parse().map_err(value_error)?;
-        AnalyticModel::new(absorption_fwhm_nm, emission_fwhm_nm, accounting, quantum_yield)
+        AnalyticModel::new(absorption_fwhm_nm, emission_fwhm_nm, accounting.0, quantum_yield)
             .map(|model| Self(upglow::Model::Analytic(model)))
             .map_err(value_error)
     }
@@ -111,14 +111,14 @@ impl Model {
     #[staticmethod]
     fn dyes(
         set: &DyeSet,
-        accounting: &str,
-        mixing: &str,
+        accounting: Word<Accounting>,
+        mixing: Word<Mixing>,
         quantum_yield: Yield,
         optical_density: Option<f64>,
     ) -> PyResult<Self> {
         let options = DyeOptions {
-            accounting: accounting.parse().map_err(value_error)?,
-            mixing: mixing.parse().map_err(value_error)?,
+            accounting: accounting.0,
+            mixing: mixing.0,
             quantum_yield: match quantum_yield {
                 Yield::Number(q) => QuantumYield::Fixed(q),
                 Yield::Word(word) => word.parse().map_err(value_error)?,

@@ -1,10 +1,10 @@
 //! Observers.
 
-use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
+use crate::arrays::triples;
 use crate::errors::value_error;
-use crate::rows::triples;
 
 /// A named set of color-matching functions from 300 to 830 nm by 1 nm.
 #[pyclass(frozen, module = "upglow._upglow")]
@@ -35,11 +35,11 @@ impl Observer {
     #[staticmethod]
     fn from_samples(
         name: &str,
-        wavelengths_nm: Vec<f64>,
+        wavelengths_nm: PyReadonlyArray1<'_, f64>,
         matching: PyReadonlyArray2<'_, f64>,
     ) -> PyResult<Self> {
-        let matching = triples(matching.as_slice()?);
-        upglow_color::Observer::from_samples(name, &wavelengths_nm, matching)
+        let (nm, matching) = (wavelengths_nm.as_slice()?, triples(matching.as_slice()?));
+        upglow_color::Observer::from_samples(name, nm, matching)
             .map(Self)
             .map_err(|error| value_error(format_args!("{name}: {error}")))
     }

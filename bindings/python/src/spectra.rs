@@ -1,70 +1,46 @@
-//! Spectra and re-radiation of arrays of colors.
+//! Spectra and re-radiation matrices of arrays of colors.
 
-use numpy::{PyArray2, PyReadonlyArray1};
+use numpy::PyArray2;
 use pyo3::prelude::*;
 use upglow::{Bispectral, Mixture};
-use upglow_color::Grid;
+use upglow_color::{Grid, choices};
 
+use crate::arrays::triples;
 use crate::cube::Cube;
 use crate::errors::value_error;
-use crate::materials::nodes;
-use crate::rows::{
-    Doubles, Number, Rows, Stored, Subjects, answers, check_count, triples, with_rows,
-};
+use crate::nodes::nodes;
+use crate::rows::{Doubles, Rows, Stored, Subjects, answers, with_rows};
+use crate::word::Word;
 
-/// Reflectances, `[color][wavelength]`.
-#[pyfunction]
-#[pyo3(signature = (cube, of, wavelengths_nm, threads))]
-pub(crate) fn reflectance<'py>(
-    py: Python<'py>,
-    cube: &Cube,
-    of: Subjects<'py>,
-    wavelengths_nm: Vec<f64>,
-    threads: Option<usize>,
-) -> PyResult<Bound<'py, PyAny>> {
-    with_rows!(cube, of, rows => {
-        let nm = converted(&rows, &wavelengths_nm);
-        answers(py, &rows, nm.len(), threads, |_, material, out| material.reflectances(&nm, out))
-    })
+/// What a spectrum is of.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Quantity {
+    /// What leaves at the wavelength it came at.
+    Reflectance,
+    /// What leaves at any wavelength.
+    Albedo,
 }
 
-/// Albedos, `[color][wavelength]`.
+choices!(Quantity, "quantity", Reflectance = "reflectance", Albedo = "albedo");
+
+/// Reflectances or albedos, `[color][wavelength]`.
 #[pyfunction]
-#[pyo3(signature = (cube, of, wavelengths_nm, threads))]
-pub(crate) fn albedo<'py>(
+#[pyo3(signature = (cube, of, quantity, wavelengths_nm, threads))]
+pub(crate) fn spectrum<'py>(
     py: Python<'py>,
     cube: &Cube,
     of: Subjects<'py>,
+    quantity: Word<Quantity>,
     wavelengths_nm: Vec<f64>,
     threads: Option<usize>,
 ) -> PyResult<Bound<'py, PyAny>> {
     with_rows!(cube, of, rows => {
-        let nm = converted(&rows, &wavelengths_nm);
-        answers(py, &rows, nm.len(), threads, |_, material, out| {
-            for (out, nm) in out.iter_mut().zip(&nm) {
-                *out = material.albedo(*nm);
+        let nm = rows.numbers(&wavelengths_nm);
+        answers(py, &rows, nm.len(), threads, |_, material, out| match quantity.0 {
+            Quantity::Reflectance => material.reflectances(&nm, out),
+            Quantity::Albedo => {
+                out.iter_mut().zip(&nm).for_each(|(out, nm)| *out = material.albedo(*nm));
             }
-        })
-    })
-}
-
-/// Energy that moves between two wavelengths, 1/nm, `[color][1]`.
-#[pyfunction]
-#[pyo3(signature = (cube, of, in_nm, out_nm, threads))]
-pub(crate) fn reradiation<'py>(
-    py: Python<'py>,
-    cube: &Cube,
-    of: Subjects<'py>,
-    in_nm: PyReadonlyArray1<'py, f64>,
-    out_nm: PyReadonlyArray1<'py, f64>,
-    threads: Option<usize>,
-) -> PyResult<Bound<'py, PyAny>> {
-    let (from, to) = (in_nm.as_slice()?, out_nm.as_slice()?);
-    with_rows!(cube, of, rows => {
-        check_count("in_nm", from.len(), rows.len())?;
-        check_count("out_nm", to.len(), rows.len())?;
-        answers(py, &rows, 1, threads, |row, material, out| {
-            out[0] = material.reradiation_per_nm(number(from[row]), number(to[row]));
         })
     })
 }
@@ -99,7 +75,7 @@ pub(crate) fn reradiation_matrix<'py>(
 
 fn matrices<'py, 'r>(
     py: Python<'py>,
-    rows: &impl Rows<Number = f64, Material = Mixture<'r>>,
+    rows: &impl Rows<Material = Mixture<'r>>,
     grid: Grid,
     threads: Option<usize>,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
@@ -108,12 +84,4 @@ fn matrices<'py, 'r>(
             out.copy_from_slice(&row);
         }
     })
-}
-
-fn converted<R: Rows>(_: &R, wavelengths_nm: &[f64]) -> Vec<R::Number> {
-    wavelengths_nm.iter().map(|nm| R::Number::from_double(*nm)).collect()
-}
-
-fn number<T: Number>(value: f64) -> T {
-    T::from_double(value)
 }

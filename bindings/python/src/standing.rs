@@ -4,8 +4,8 @@ use numpy::{PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use upglow_color::LinearRgb;
 
+use crate::arrays::{fill, triples};
 use crate::contract::Contract;
-use crate::rows::{fill, triples};
 use crate::threads::on_threads;
 
 /// Kind, distance in XYZ and ΔE00 of each color.

@@ -1,12 +1,14 @@
 //! What a cube promises, recomputed.
 
 use pyo3::prelude::*;
+use upglow::Interpolation;
 use upglow_fit::{Check, Offender, VerifyOptions};
 
 use crate::cube::Cube;
 use crate::errors::value_error;
 use crate::threads::on_threads;
 use crate::watch::watched;
+use crate::word::Word;
 
 /// Name, about, verdict, value, limit, unit, checked, violations and the worst found.
 type Row = (
@@ -28,13 +30,12 @@ pub(crate) fn verify(
     py: Python<'_>,
     cube: &Cube,
     points: usize,
-    interpolation: &str,
+    interpolation: Word<Interpolation>,
     seed: u64,
     threads: Option<usize>,
     report: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(usize, usize, bool, Vec<Row>)> {
-    let interpolation = interpolation.parse().map_err(value_error)?;
-    let options = VerifyOptions { points, interpolation, seed };
+    let options = VerifyOptions { points, interpolation: interpolation.0, seed };
     let found = watched(py, report, |watcher| {
         on_threads(threads, || upglow_fit::verify(&cube.cube, &options, watcher))
     })??;

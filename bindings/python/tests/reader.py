@@ -5,6 +5,7 @@ Nothing of the package is used here: this is what the package is compared with.
 
 from __future__ import annotations
 
+import hashlib
 import json
 import struct
 from dataclasses import dataclass
@@ -28,6 +29,25 @@ def tensors(content: bytes) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
         data = np.frombuffer(content[first:end], dtypes[tensor["dtype"]])
         arrays[name] = data.reshape(tensor["shape"])
     return entry, arrays
+
+
+def rewritten(content: bytes, **changed: np.ndarray) -> bytes:
+    """The file with other arrays of the same shapes, and their checksum."""
+    _, arrays = tensors(content)
+    arrays |= changed
+    (length,) = struct.unpack("<Q", content[:8])
+    outer = json.loads(content[8 : 8 + length])
+    sha = hashlib.sha256(outer.pop("__metadata__")["upglow"].encode())
+    for name in sorted(arrays.keys() - {"sha256"}):
+        shape = ",".join(map(str, arrays[name].shape))
+        sha.update(f"\n{name} {outer[name]['dtype']} {shape}\n".encode())
+        sha.update(arrays[name].tobytes())
+    arrays["sha256"] = np.frombuffer(sha.digest(), np.uint8)
+    made = bytearray(content)
+    for name, tensor in outer.items():
+        first, end = (8 + length + offset for offset in tensor["data_offsets"])
+        made[first:end] = arrays[name].tobytes()
+    return bytes(made)
 
 
 @dataclass

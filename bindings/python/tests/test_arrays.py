@@ -101,6 +101,23 @@ def test_polished_materials_are_single_ones_near_the_color(cube, rng) -> None:
     assert materials[..., 3].level == materials.level[3]
 
 
+def test_the_columns_of_stored_numbers_have_names(any_cube: upglow.Cube) -> None:
+    nodes = any_cube.nodes
+    names = {
+        "reflectance": [None, "concentration", None],
+        "dyes": ["weight", "concentration", None],
+        "analytic": ["emission_peak_nm", "stokes_shift_nm", "concentration"],
+    }
+    for column, name in enumerate(["edge_nm", "level", "slope_per_nm"]):
+        assert np.array_equal(getattr(nodes, name), nodes.reflectance[..., column])
+    for column, name in enumerate(names[nodes.model]):
+        if name is not None:
+            assert np.array_equal(getattr(nodes, name), nodes.fluorescence[..., column])
+    for name in {"weight", "emission_peak_nm", "stokes_shift_nm"} - set(names[nodes.model]):
+        with pytest.raises(AttributeError, match=f"materials of the model {nodes.model} have no"):
+            getattr(nodes, name)
+
+
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
 def test_what_is_outside_is_refused_by_index_and_value(cube, dtype) -> None:
     rgb = np.full((2, 3, 3), 0.5, dtype=dtype)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import host
 import numpy as np
 import pytest
+from reader import rewritten
 
 import upglow
 
@@ -14,6 +15,19 @@ COUNT = 4000
 DRAWS = 200_000
 # Single precision, a sum of four materials: half a dozen roundings of a number up to 1.
 VALUE_TOL = 1e-6
+# Edge (nm), level and slope (1/nm) where plain single precision has no digits left or overflows.
+STRANGE = [
+    (-3e5, 1.0, 1e-6),
+    (1.5e5, 1.0, 1e-6),
+    (2e6, 1.0, 1e-6),
+    (550.0, 1e30, 0.01),
+    (550.0, -1e30, -0.01),
+    (3e38, 0.5, 0.01),
+    (550.0, 0.5, 1e30),
+    (-3e38, -1e30, 1e30),
+]
+# Single precision of numbers near 10 under the root.
+STRANGE_TOL = 1e-5
 # The same of densities up to 0.03 per nm.
 DENSITY_TOL = 1e-7
 # Draws in 53 bins: the worst of so many is beyond this once in 10 000.
@@ -52,6 +66,24 @@ def test_reflectance_and_albedo_are_the_library_s(any_cube, jit_cube, rng) -> No
         expected = np.array([ask(one, one_nm) for one, one_nm in zip(rgb, nm, strict=True)])
         found = np.array(getattr(jit_cube, name)(color, at))
         assert np.abs(found - expected).max() < VALUE_TOL, name
+
+
+def test_edges_far_from_all_light_and_huge_levels_are_the_library_s(rng) -> None:
+    from upglow.mitsuba._jit_cube import JitCube
+
+    content = upglow.build(model=upglow.Reflectance(), resolution=2).to_bytes()
+    nodes = np.array(STRANGE, np.float32).reshape(2, 2, 2, 3)
+    cube = upglow.Cube.from_bytes(rewritten(content, reflectance=nodes))
+    jit = JitCube(cube)
+    corners = np.array([[r, g, b] for b in (0, 1) for g in (0, 1) for r in (0, 1)], np.float32)
+    for rgb in (*corners, *rng.random((100, 3), dtype=np.float32)):
+        nm = rng.uniform(300, 830, 50).astype(np.float32)
+        expected = cube.reflectance(rgb, nm)
+        found = np.array(jit.reflectance(mi.Color3f(*rgb.tolist()), mi.Float(nm)))
+        assert np.abs(found - expected).max() < STRANGE_TOL, rgb
+    # Double precision says the same of edges that are only far.
+    exact = cube.reflectance(corners[:3].astype(np.float64), [300.0, 550.0, 830.0])
+    assert np.abs(cube.reflectance(corners[:3], [300, 550, 830]) - exact).max() < STRANGE_TOL
 
 
 def test_reradiation_is_the_library_s(any_cube, jit_cube, rng) -> None:

@@ -12,6 +12,12 @@ from ._materials import Materials
 
 Shape = tuple[int, ...]
 
+Threads = int | None
+"""A number of threads; one for each core by default."""
+
+Of = ArrayLike | Materials
+"""What is evaluated: linear RGB of shape (..., 3), or materials."""
+
 
 def rgb_array(rgb: ArrayLike) -> NDArray[Any]:
     """RGB of shape (..., 3) in float32, where it is that already, or float64."""
@@ -56,7 +62,7 @@ def single_rows(array: NDArray[Any]) -> NDArray[np.float32]:
     return rows(array.astype(np.float32, copy=False))
 
 
-def subjects(of: ArrayLike | Materials, outside: str) -> tuple[Any, Shape]:
+def subjects(of: Of, outside: str) -> tuple[Any, Shape]:
     """What is evaluated, as the native half takes it, and its leading shape."""
     if isinstance(of, Materials):
         return of._rows(), of.shape
@@ -65,13 +71,14 @@ def subjects(of: ArrayLike | Materials, outside: str) -> tuple[Any, Shape]:
 
 
 def broadcast(
-    of: ArrayLike | Materials, outside: str, *numbers: NDArray[np.float64]
-) -> tuple[Any, list[NDArray[np.float64]], Shape]:
-    """What is evaluated and numbers for each of it, all of one leading shape."""
+    of: Of, outside: str, *numbers: ArrayLike
+) -> tuple[Any, NDArray[np.float64], Shape]:
+    """What is evaluated, and a row of numbers for each of it; and the leading shape of all."""
     subject = of if isinstance(of, Materials) else within(of, outside)
     lead = subject.shape if isinstance(subject, Materials) else subject.shape[:-1]
-    shape = np.broadcast_shapes(lead, *(number.shape for number in numbers))
-    flat = [np.ascontiguousarray(np.broadcast_to(n, shape)).reshape(-1) for n in numbers]
+    arrays = [np.asarray(number, dtype=np.float64) for number in numbers]
+    shape = np.broadcast_shapes(lead, *(array.shape for array in arrays))
+    given = rows(np.stack([np.broadcast_to(array, shape) for array in arrays], axis=-1))
     if isinstance(subject, Materials):
-        return subject.broadcast_to(shape)._rows(), flat, shape
-    return rows(np.broadcast_to(subject, (*shape, 3))), flat, shape
+        return subject.broadcast_to(shape)._rows(), given, shape
+    return rows(np.broadcast_to(subject, (*shape, 3))), given, shape

@@ -6,6 +6,7 @@ import json
 import os
 import warnings
 from collections import OrderedDict
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -14,7 +15,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _upglow
 from ._arrays import (
+    Of,
     Shape,
+    Threads,
     broadcast,
     refuse_outside,
     rgb_array,
@@ -96,7 +99,7 @@ def build(
     metric: str = "de2000",
     method: str = "search",
     sweeps: int | None = None,
-    threads: int | None = None,
+    threads: Threads = None,
     progress: bool | Report = False,
 ) -> Cube:
     """Fit a material for every node of a grid over RGB. Ctrl-C stops it.
@@ -273,7 +276,7 @@ class Cube:
         scale: str = "white",
         step_nm: int = 5,
         outside: str = "raise",
-        threads: int | None = None,
+        threads: Threads = None,
     ) -> NDArray[np.float32]:
         """XYZ of the materials, in single precision.
 
@@ -309,7 +312,7 @@ class Cube:
         scale: str = "white",
         step_nm: int = 5,
         outside: str = "raise",
-        threads: int | None = None,
+        threads: Threads = None,
     ) -> NDArray[np.float32]:
         """Linear RGB, in the contract's space, of the materials under another light.
 
@@ -324,7 +327,7 @@ class Cube:
         colors = self._colors_under(light, scale, step_nm)
         return colors.rgb(single_rows(array), threads).reshape(array.shape)
 
-    def check(self, rgb: ArrayLike, *, threads: int | None = None) -> CubeCheck:
+    def check(self, rgb: ArrayLike, *, threads: Threads = None) -> CubeCheck:
         """What it takes to show colors, and how far this cube's materials are from them.
 
         ``rgb`` is linear RGB of shape (..., 3); any finite numbers. Outside the cube ``de2000`` is
@@ -351,12 +354,7 @@ class Cube:
     # Spectra
 
     def reflectance(
-        self,
-        of: ArrayLike | Materials,
-        wavelengths_nm: ArrayLike,
-        *,
-        outside: str = "raise",
-        threads: int | None = None,
+        self, of: Of, wavelengths_nm: ArrayLike, *, outside: str = "raise", threads: Threads = None
     ) -> NDArray[Any]:
         """Share of incident light that is reflected at the same wavelength, 0 to 1.
 
@@ -366,53 +364,40 @@ class Cube:
         -------
         array of shape (..., n), or (...) for one wavelength
         """
-        native, shape = subjects(of, outside)
-        nm = wavelength_list(wavelengths_nm)
-        found = _upglow.reflectance(self._native, native, nm.reshape(-1).tolist(), threads)
-        return _shaped(found, (*shape, *nm.shape))
+        return self._spectrum("reflectance", of, wavelengths_nm, outside, threads)
 
     def albedo(
-        self,
-        of: ArrayLike | Materials,
-        wavelengths_nm: ArrayLike,
-        *,
-        outside: str = "raise",
-        threads: int | None = None,
+        self, of: Of, wavelengths_nm: ArrayLike, *, outside: str = "raise", threads: Threads = None
     ) -> NDArray[Any]:
         """Share of light at each wavelength that comes back at any wavelength, 0 to 1.
 
         Shapes as in `reflectance`.
         """
-        native, shape = subjects(of, outside)
-        nm = wavelength_list(wavelengths_nm)
-        found = _upglow.albedo(self._native, native, nm.reshape(-1).tolist(), threads)
-        return _shaped(found, (*shape, *nm.shape))
+        return self._spectrum("albedo", of, wavelengths_nm, outside, threads)
 
     def reradiation(
         self,
-        of: ArrayLike | Materials,
+        of: Of,
         in_nm: ArrayLike,
         out_nm: ArrayLike,
         *,
         outside: str = "raise",
-        threads: int | None = None,
+        threads: Threads = None,
     ) -> NDArray[Any]:
         """Energy that leaves per nm at ``out_nm`` by fluorescence, per unit that came at ``in_nm``.
 
         1/nm. Reflection at the same wavelength is `reflectance`. ``in_nm`` and ``out_nm`` broadcast
         against the leading shape of ``of``; the result has that shape.
         """
-        native, (incident, outgoing), shape = broadcast(of, outside, _nm(in_nm), _nm(out_nm))
-        found = _upglow.reradiation(self._native, native, incident, outgoing, threads)
-        return _shaped(found, shape)
+        return self._number("reradiation_per_nm", of, (in_nm, out_nm), outside, threads)
 
     def reradiation_matrix(
         self,
-        of: ArrayLike | Materials,
+        of: Of,
         wavelengths_nm: ArrayLike = FIT_NM,
         *,
         outside: str = "raise",
-        threads: int | None = None,
+        threads: Threads = None,
     ) -> NDArray[np.float64]:
         """The re-radiation (Donaldson) matrix over the bands around n wavelengths.
 
@@ -432,12 +417,12 @@ class Cube:
 
     def radiance_factor(
         self,
-        of: ArrayLike | Materials,
+        of: Of,
         wavelengths_nm: ArrayLike = FIT_NM,
         *,
         light: Any = None,
         outside: str = "raise",
-        threads: int | None = None,
+        threads: Threads = None,
     ) -> NDArray[np.float64]:
         """Total radiance factor under a light: what leaves at each wavelength over what comes there.
 
@@ -489,12 +474,12 @@ class Cube:
 
     def sample_incident(
         self,
-        of: ArrayLike | Materials,
+        of: Of,
         out_nm: ArrayLike,
         u: ArrayLike,
         *,
         outside: str = "raise",
-        threads: int | None = None,
+        threads: Threads = None,
     ) -> Samples:
         """Draw the wavelength of incident light, given that of the light that leaves.
 
@@ -502,126 +487,103 @@ class Cube:
         axis: the first chooses between reflection and fluorescence, the second draws. ``out_nm`` and
         ``u[..., 0]`` broadcast against the leading shape of ``of``.
         """
-        return self._sample(of, "incident", out_nm, u, outside, threads)
+        return self._sample("sample_incident", of, out_nm, u, outside, threads)
 
     def sample_outgoing(
         self,
-        of: ArrayLike | Materials,
+        of: Of,
         in_nm: ArrayLike,
         u: ArrayLike,
         *,
         outside: str = "raise",
-        threads: int | None = None,
+        threads: Threads = None,
     ) -> Samples:
         """Draw the wavelength of the light that leaves, given that of incident light.
 
         The light's way; arguments as in `sample_incident`.
         """
-        return self._sample(of, "outgoing", in_nm, u, outside, threads)
+        return self._sample("sample_outgoing", of, in_nm, u, outside, threads)
 
     def incident_pdf_per_nm(
         self,
-        of: ArrayLike | Materials,
+        of: Of,
         in_nm: ArrayLike,
         out_nm: ArrayLike,
         *,
         outside: str = "raise",
-        threads: int | None = None,
+        threads: Threads = None,
     ) -> NDArray[Any]:
         """Density, 1/nm, with which `sample_incident` draws ``in_nm`` by fluorescence.
 
         Shapes as in `reradiation`.
         """
-        return self._pdf(of, "incident", in_nm, out_nm, outside, threads)
+        return self._number("incident_pdf_per_nm", of, (in_nm, out_nm), outside, threads)
 
     def outgoing_pdf_per_nm(
         self,
-        of: ArrayLike | Materials,
+        of: Of,
         in_nm: ArrayLike,
         out_nm: ArrayLike,
         *,
         outside: str = "raise",
-        threads: int | None = None,
+        threads: Threads = None,
     ) -> NDArray[Any]:
         """Density, 1/nm, with which `sample_outgoing` draws ``out_nm`` by fluorescence.
 
         Shapes as in `reradiation`.
         """
-        return self._pdf(of, "outgoing", in_nm, out_nm, outside, threads)
+        return self._number("outgoing_pdf_per_nm", of, (in_nm, out_nm), outside, threads)
 
     def incident_elastic_probability(
-        self,
-        of: ArrayLike | Materials,
-        out_nm: ArrayLike,
-        *,
-        outside: str = "raise",
-        threads: int | None = None,
+        self, of: Of, out_nm: ArrayLike, *, outside: str = "raise", threads: Threads = None
     ) -> NDArray[Any]:
         """Probability, 0 to 1, that `sample_incident` keeps the wavelength."""
-        return self._elastic(of, "incident", out_nm, outside, threads)
+        return self._number("incident_elastic_probability", of, (out_nm,), outside, threads)
 
     def outgoing_elastic_probability(
-        self,
-        of: ArrayLike | Materials,
-        in_nm: ArrayLike,
-        *,
-        outside: str = "raise",
-        threads: int | None = None,
+        self, of: Of, in_nm: ArrayLike, *, outside: str = "raise", threads: Threads = None
     ) -> NDArray[Any]:
         """Probability, 0 to 1, that `sample_outgoing` keeps the wavelength."""
-        return self._elastic(of, "outgoing", in_nm, outside, threads)
+        return self._number("outgoing_elastic_probability", of, (in_nm,), outside, threads)
+
+    def _spectrum(
+        self, quantity: str, of: Of, wavelengths_nm: ArrayLike, outside: str, threads: Threads
+    ) -> NDArray[Any]:
+        native, shape = subjects(of, outside)
+        nm = wavelength_list(wavelengths_nm)
+        listed = nm.reshape(-1).tolist()
+        found = _upglow.spectrum(self._native, native, quantity, listed, threads)
+        return _shaped(found, (*shape, *nm.shape))
 
     def _sample(
-        self,
-        of: ArrayLike | Materials,
-        drawn: str,
-        known_nm: ArrayLike,
-        u: ArrayLike,
-        outside: str,
-        threads: int | None,
+        self, question: str, of: Of, known_nm: ArrayLike, u: ArrayLike, outside: str, threads: Threads
     ) -> Samples:
         numbers = np.asarray(u, dtype=np.float64)
         if numbers.ndim == 0 or numbers.shape[-1] != 2:
             raise ValueError(f"u has shape {numbers.shape}, expected (..., 2)")
         if not np.all((numbers >= 0.0) & (numbers < 1.0)):
             raise ValueError("u holds a number that is not in 0 to 1, 1 excluded")
-        native, (known, first, second), shape = broadcast(
-            of, outside, _nm(known_nm), numbers[..., 0], numbers[..., 1]
-        )
-        pairs = np.stack([first, second], axis=-1)
-        found = _upglow.sample(self._native, native, drawn, known, pairs, threads)
-        nm, throughput, pdf, is_elastic = (_shaped(found[:, k], shape) for k in range(4))
+        given = (known_nm, numbers[..., 0], numbers[..., 1])
+        found, shape = self._answer(question, of, given, outside, threads)
+        nm, throughput, pdf, is_elastic = (_shaped(column, shape) for column in found.T)
         return Samples(nm, throughput, pdf, is_elastic == 1.0)
 
-    def _pdf(
-        self,
-        of: ArrayLike | Materials,
-        drawn: str,
-        in_nm: ArrayLike,
-        out_nm: ArrayLike,
-        outside: str,
-        threads: int | None,
+    def _number(
+        self, question: str, of: Of, given: Sequence[ArrayLike], outside: str, threads: Threads
     ) -> NDArray[Any]:
-        native, (incident, outgoing), shape = broadcast(of, outside, _nm(in_nm), _nm(out_nm))
-        found = _upglow.pdf_per_nm(self._native, native, drawn, incident, outgoing, threads)
-        return _shaped(found, shape)
+        return _shaped(*self._answer(question, of, given, outside, threads))
 
-    def _elastic(
-        self,
-        of: ArrayLike | Materials,
-        drawn: str,
-        known_nm: ArrayLike,
-        outside: str,
-        threads: int | None,
-    ) -> NDArray[Any]:
-        native, (known,), shape = broadcast(of, outside, _nm(known_nm))
-        found = _upglow.elastic_probability(self._native, native, drawn, known, threads)
-        return _shaped(found, shape)
+    def _answer(
+        self, question: str, of: Of, given: Sequence[ArrayLike], outside: str, threads: Threads
+    ) -> tuple[NDArray[Any], Shape]:
+        """What each material answers to numbers of its own, one row each, and their leading shape."""
+        native, numbers, shape = broadcast(of, outside, *given)
+        return _upglow.answer(self._native, native, question, numbers, threads), shape
 
     # Materials
 
     def material(
-        self, rgb: ArrayLike, *, outside: str = "raise", threads: int | None = None
+        self, rgb: ArrayLike, *, outside: str = "raise", threads: Threads = None
     ) -> Materials:
         """One material for each color, as a texture stores it, in single precision.
 
@@ -634,7 +596,7 @@ class Cube:
         return Materials._of(found, array.shape[:-1], self.model)
 
     def fit(
-        self, rgb: ArrayLike, *, threads: int | None = None, progress: bool | Report = False
+        self, rgb: ArrayLike, *, threads: Threads = None, progress: bool | Report = False
     ) -> Materials:
         """Fit each color as the cube's nodes were fitted, instead of looking it up. Ctrl-C stops it.
 
@@ -666,7 +628,7 @@ class Cube:
         points: int = 1_000_000,
         interpolation: str = "blend",
         seed: int = 0,
-        threads: int | None = None,
+        threads: Threads = None,
         progress: bool | Report = False,
     ) -> VerifyReport:
         """Recompute, at every nm, all that the cube promises, by code of its own. Ctrl-C stops it.
@@ -689,10 +651,6 @@ class Cube:
             )
         found = tuple(Check(*check) for check in checks)
         return VerifyReport(nodes=nodes, points=tried, holds=holds, checks=found)
-
-
-def _nm(wavelengths_nm: ArrayLike) -> NDArray[np.float64]:
-    return np.asarray(wavelengths_nm, dtype=np.float64)
 
 
 def _shaped(found: NDArray[Any], shape: Shape) -> NDArray[Any]:

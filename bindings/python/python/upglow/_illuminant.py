@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import os
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _upglow
-from ._names_and_files import named_or_read
-from ._wavelengths import samples
+from ._named_table import NamedTable, native_table
 
 
-class Illuminant:
+class Illuminant(NamedTable):
     """A light: relative spectral power from 300 to 830 nm by 1 nm.
 
     Parameters
@@ -43,7 +41,7 @@ class Illuminant:
     __slots__ = ("_native",)
 
     def __init__(self, source: Any, *, name: str | None = None) -> None:
-        self._native = _native(source, name)
+        self._native = native_table(_upglow.Illuminant, source, name)
 
     @classmethod
     def line(cls, peak_nm: float, fwhm_nm: float, *, name: str | None = None) -> Illuminant:
@@ -68,27 +66,6 @@ class Illuminant:
         """Relative power at each wavelength of ``upglow.FINE_NM``; shape (531,)."""
         return self._native.power
 
-    def __repr__(self) -> str:
-        return f"Illuminant({self.name!r})"
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Illuminant) and self._key() == other._key()
-
-    def __hash__(self) -> int:
-        return hash(self._key())
-
-    def _key(self) -> tuple[str, bytes]:
-        return self.name, self.power.tobytes()
-
-
-def _native(source: Any, name: str | None) -> _upglow.Illuminant:
-    if isinstance(source, _upglow.Illuminant):
-        return source
-    if isinstance(source, Illuminant):
-        return source._native
-    if isinstance(source, (str, os.PathLike)):
-        kind = _upglow.Illuminant
-        return named_or_read(os.fspath(source), name, kind.named, kind.from_csv)
-    nm, power = samples("illuminant", source)
-    label = name or str(getattr(source, "name", "custom"))
-    return _upglow.Illuminant.from_samples(label, nm.tolist(), power.tolist())
+    @property
+    def _table(self) -> NDArray[np.float64]:
+        return self.power

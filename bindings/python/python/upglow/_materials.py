@@ -2,28 +2,32 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+_Change = Callable[[NDArray[Any]], NDArray[Any]]
+
 
 @dataclass(frozen=True, kw_only=True)
 class Materials:
-    """An array of materials, each in six numbers at most. What they mean: docs/cube-format.md.
+    """An array of materials, each in six numbers at most, which properties name one by one.
 
-    Index it as an array: ``materials[..., 0]``. `Cube` methods take it in place of RGB.
+    What they mean: docs/cube-format.md. Index it as an array: ``materials[..., 0]``. `Cube` methods
+    take it in place of RGB.
 
     Attributes
     ----------
     reflectance
-        Wavelength of the steepest point (nm), level and slope (1/nm) there; float32 (..., 3).
+        `edge_nm`, `level` and `slope_per_nm` as a cube's file has them; float32 (..., 3).
     dye
         Number of the first dye in the ring, from 0; uint8 (...).
     fluorescence
-        ``dyes``: weight, concentration, 0. ``analytic``: emission peak (nm), Stokes shift (nm),
-        concentration. Zeros where nothing fluoresces; float32 (..., 3).
+        ``dyes``: `weight`, `concentration`, 0. ``analytic``: `emission_peak_nm`, `stokes_shift_nm`,
+        `concentration`. Zeros where nothing fluoresces; float32 (..., 3).
     de2000
         CIEDE2000 of each material against its color, sums over 5 nm; float32 (...).
     model
@@ -68,29 +72,51 @@ class Materials:
         return self.reflectance[..., 2]
 
     @property
+    def weight(self) -> NDArray[np.float32]:
+        """Of ``dyes``: share of the second of the two dyes, 0 to 1; shape (...)."""
+        return self._fluorescence("weight", dyes=0)
+
+    @property
+    def emission_peak_nm(self) -> NDArray[np.float32]:
+        """Of ``analytic``: wavelength of the emission's peak, nm; shape (...)."""
+        return self._fluorescence("emission peak", analytic=0)
+
+    @property
+    def stokes_shift_nm(self) -> NDArray[np.float32]:
+        """Of ``analytic``: distance from the absorption's peak to the emission's, nm; shape (...)."""
+        return self._fluorescence("Stokes shift", analytic=1)
+
+    @property
     def concentration(self) -> NDArray[np.float32]:
         """Share of the light at the absorption's peak that is absorbed, 0 to 1; shape (...)."""
-        return self.fluorescence[..., 2 if self.model == "analytic" else 1]
+        return self._fluorescence("concentration", reflectance=1, dyes=1, analytic=2)
+
+    def _fluorescence(self, name: str, **columns: int) -> NDArray[np.float32]:
+        """The column that a number has in each model; ``AttributeError`` in others."""
+        if self.model not in columns:
+            raise AttributeError(f"materials of the model {self.model} have no {name}")
+        return self.fluorescence[..., columns[self.model]]
 
     def __getitem__(self, index: Any) -> Materials:
         lead = index if isinstance(index, tuple) else (index,)
         has_ellipsis = any(part is Ellipsis for part in lead)
         triple = (*lead, slice(None)) if has_ellipsis else (*lead, Ellipsis, slice(None))
-        return Materials(
-            reflectance=self.reflectance[triple],
-            dye=np.asarray(self.dye[index]),
-            fluorescence=self.fluorescence[triple],
-            de2000=np.asarray(self.de2000[index]),
-            model=self.model,
-        )
+        return self._each(lambda numbers: np.asarray(numbers[index]), lambda rows: rows[triple])
 
     def broadcast_to(self, shape: tuple[int, ...]) -> Materials:
         """The same materials repeated to a larger shape, by numpy's rules."""
+        return self._each(
+            lambda numbers: np.broadcast_to(numbers, shape),
+            lambda rows: np.broadcast_to(rows, (*shape, 3)),
+        )
+
+    def _each(self, of_number: _Change, of_three: _Change) -> Materials:
+        """The materials after a change of the arrays with a number, and of those with three."""
         return Materials(
-            reflectance=np.broadcast_to(self.reflectance, (*shape, 3)),
-            dye=np.broadcast_to(self.dye, shape),
-            fluorescence=np.broadcast_to(self.fluorescence, (*shape, 3)),
-            de2000=np.broadcast_to(self.de2000, shape),
+            reflectance=of_three(self.reflectance),
+            dye=of_number(self.dye),
+            fluorescence=of_three(self.fluorescence),
+            de2000=of_number(self.de2000),
             model=self.model,
         )
 

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import os
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _upglow
-from ._names_and_files import named_or_read
-from ._wavelengths import samples
+from ._named_table import NamedTable, native_table
 
 
-class Observer:
+class Observer(NamedTable):
     """An eye: color-matching functions from 300 to 830 nm by 1 nm.
 
     Parameters
@@ -45,7 +43,7 @@ class Observer:
     __slots__ = ("_native",)
 
     def __init__(self, source: Any, *, name: str | None = None) -> None:
-        self._native = _native(source, name)
+        self._native = native_table(_upglow.Observer, source, name, columns=3)
 
     @staticmethod
     def names() -> list[str]:
@@ -62,27 +60,6 @@ class Observer:
         """x, y and z at each wavelength of ``upglow.FINE_NM``; shape (531, 3)."""
         return self._native.matching
 
-    def __repr__(self) -> str:
-        return f"Observer({self.name!r})"
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Observer) and self._key() == other._key()
-
-    def __hash__(self) -> int:
-        return hash(self._key())
-
-    def _key(self) -> tuple[str, bytes]:
-        return self.name, self.matching.tobytes()
-
-
-def _native(source: Any, name: str | None) -> _upglow.Observer:
-    if isinstance(source, _upglow.Observer):
-        return source
-    if isinstance(source, Observer):
-        return source._native
-    if isinstance(source, (str, os.PathLike)):
-        kind = _upglow.Observer
-        return named_or_read(os.fspath(source), name, kind.named, kind.from_csv)
-    nm, matching = samples("observer", source, columns=3)
-    label = name or str(getattr(source, "name", "custom"))
-    return _upglow.Observer.from_samples(label, nm.tolist(), np.ascontiguousarray(matching))
+    @property
+    def _table(self) -> NDArray[np.float64]:
+        return self.matching

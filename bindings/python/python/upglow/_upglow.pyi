@@ -16,26 +16,22 @@ __all__ = [
     "Model",
     "Observer",
     "__version__",
-    "albedo",
+    "answer",
     "build",
     "chromaticity_diagram",
     "colors",
     "corners",
     "dye_spectra",
-    "elastic_probability",
     "first_outside",
     "fit",
     "layer",
     "mixed_reflectances",
     "node_colors",
-    "pdf_per_nm",
     "polish",
     "reachability",
-    "reflectance",
-    "reradiation",
     "reradiation_matrix",
-    "sample",
     "solid_surface",
+    "spectrum",
     "standing",
     "verify",
 ]
@@ -60,9 +56,7 @@ class Illuminant:
     @staticmethod
     def from_csv(name: str, text: str) -> Illuminant: ...
     @staticmethod
-    def from_samples(
-        name: str, wavelengths_nm: Sequence[float], power: Sequence[float]
-    ) -> Illuminant: ...
+    def from_samples(name: str, wavelengths_nm: _Doubles, power: _Doubles) -> Illuminant: ...
     @staticmethod
     def line(name: str, peak_nm: float, fwhm_nm: float) -> Illuminant: ...
     @staticmethod
@@ -81,9 +75,7 @@ class Observer:
     @staticmethod
     def from_csv(name: str, text: str) -> Observer: ...
     @staticmethod
-    def from_samples(
-        name: str, wavelengths_nm: Sequence[float], matching: _Doubles
-    ) -> Observer: ...
+    def from_samples(name: str, wavelengths_nm: _Doubles, matching: _Doubles) -> Observer: ...
     @property
     def name(self) -> str: ...
     @property
@@ -169,7 +161,9 @@ class Cube:
     def resolution(self) -> int: ...
     def header_json(self) -> str: ...
     def nodes(self) -> _Materials: ...
+    def packed_nodes(self) -> _Singles: ...
     def dye_curves(self) -> _Doubles: ...
+    def dye_numbers(self) -> _Doubles: ...
     def summary(self) -> tuple[int, int, int, int, float, float, float, int]: ...
 
 @final
@@ -195,32 +189,15 @@ def colors(
     cube: Cube, light: Illuminant | None, scale: str, step_nm: int
 ) -> Colors: ...
 def first_outside(rgb: _Singles | _Doubles, to_fit: bool) -> tuple[int, str] | None: ...
-def reflectance(
-    cube: Cube, of: _Subjects, wavelengths_nm: Sequence[float], threads: int | None
+def spectrum(
+    cube: Cube, of: _Subjects, quantity: str, wavelengths_nm: Sequence[float], threads: int | None
 ) -> NDArray[Any]: ...
-def albedo(
-    cube: Cube, of: _Subjects, wavelengths_nm: Sequence[float], threads: int | None
-) -> NDArray[Any]: ...
-def reradiation(
-    cube: Cube, of: _Subjects, in_nm: _Doubles, out_nm: _Doubles, threads: int | None
+def answer(
+    cube: Cube, of: _Subjects, question: str, given: _Doubles, threads: int | None
 ) -> NDArray[Any]: ...
 def reradiation_matrix(
     cube: Cube, of: _Subjects, grid_nm: Sequence[int], threads: int | None
 ) -> _Doubles: ...
-def sample(
-    cube: Cube, of: _Subjects, drawn: str, known_nm: _Doubles, u: _Doubles, threads: int | None
-) -> NDArray[Any]: ...
-def pdf_per_nm(
-    cube: Cube,
-    of: _Subjects,
-    drawn: str,
-    in_nm: _Doubles,
-    out_nm: _Doubles,
-    threads: int | None,
-) -> NDArray[Any]: ...
-def elastic_probability(
-    cube: Cube, of: _Subjects, drawn: str, known_nm: _Doubles, threads: int | None
-) -> NDArray[Any]: ...
 def standing(
     contract: Contract, rgb: _Doubles, threads: int | None
 ) -> tuple[NDArray[np.uint8], _Doubles, _Doubles]: ...

@@ -6,7 +6,10 @@ from typing import Any
 
 from ._host import dr
 from ._jit_lookup import Corner
-from ._node_arrays import Bells as BellArrays
+from ._node_arrays import BellArrays
+
+_PEAK_SCALE = 1.5
+"""One over the peak of the bell: an absorption is 1 at its peak."""
 
 _NEWTON_STEPS = 3
 """From a start within 0.004, each step squares the error: the third is below rounding."""
@@ -15,13 +18,14 @@ _NEWTON_STEPS = 3
 class Bells:
     """The bells of a cube."""
 
-    def __init__(self, arrays: BellArrays, quantum_yield: float, is_photon: bool) -> None:
-        self._arrays, self._quantum_yield, self._is_photon = arrays, quantum_yield, is_photon
+    def __init__(self, arrays: BellArrays, is_photon: bool) -> None:
+        self._arrays, self._is_photon = arrays, is_photon
+        self._quantum_yield = arrays.quantum_yield
 
     def absorbed(self, corner: Corner, nm: Any, active: Any) -> Any:
         """Share of the light at nm that a corner absorbs, 0 to 1."""
         u = (nm - corner.numbers.w) / self._arrays.absorption_step_nm
-        return corner.numbers.y * 1.5 * bell(u)
+        return corner.numbers.y * _PEAK_SCALE * bell(u)
 
     def returned(self, corner: Corner, nm: Any, active: Any) -> Any:
         """Share of the light at nm that a corner gives back by fluorescence, 0 to 1."""
@@ -36,7 +40,9 @@ class Bells:
 
     def leaving(self, corner: Corner, out_nm: Any, active: Any) -> Any:
         """What leaves at out_nm of light that is 1 everywhere, were no energy lost."""
-        return corner.numbers.z * self._emission(corner, out_nm)
+        # Slot z of the numbers has the integral with what photons lose.
+        absorbed_nm = corner.numbers.y * _PEAK_SCALE * self._arrays.absorption_step_nm
+        return self._quantum_yield * absorbed_nm * self._emission(corner, out_nm)
 
     def draw(self, corner: Corner, out_nm: Any, choice: Any, u: Any, active: Any) -> Any:
         """An incident wavelength (nm) with the density of what a corner absorbs."""

@@ -32,8 +32,7 @@ class JitCube:
         if isinstance(arrays.shape, DyeArrays):
             self._dyes = Dyes(arrays.shape, arrays.is_photon)
         elif arrays.shape is not None:
-            quantum_yield = float(cube.header["model"]["quantum_yield"])
-            self._dyes = Bells(arrays.shape, quantum_yield, arrays.is_photon)
+            self._dyes = Bells(arrays.shape, arrays.is_photon)
 
     @property
     def is_fluorescent(self) -> bool:

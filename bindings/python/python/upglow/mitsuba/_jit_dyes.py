@@ -27,10 +27,10 @@ class Dyes:
     def __init__(self, arrays: DyeArrays, is_photon: bool) -> None:
         self.arrays = arrays
         self._is_pooled, self._is_photon = arrays.is_pooled, is_photon
-        self._count = arrays.count
-        self._curves = mi.Float(arrays.curves.ravel())
-        self._absorbed_nm = mi.Float(arrays.absorbed_nm.ravel())
-        self._numbers = mi.Float(arrays.numbers.ravel())
+        self._count = len(arrays.absorption)
+        self._curves = mi.Float(arrays.curves().ravel())
+        self._absorbed_nm = mi.Float(arrays.absorbed_nm().ravel())
+        self._numbers = mi.Float(arrays.numbers().ravel())
 
     def absorbed(self, corner: Corner, nm: Any, active: Any) -> Any:
         """Share of the light at nm that a corner absorbs, 0 to 1."""

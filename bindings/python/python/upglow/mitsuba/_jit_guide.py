@@ -15,7 +15,6 @@ from ._jit_bells import Bells
 from ._jit_dyes import Dyes
 from ._jit_lookup import Corner
 from ._lamps import Lamps
-from ._node_arrays import lit_by
 
 _BELOW_ONE = 0.99999994
 """The greatest single below 1: a choice of 1 would fall beyond every corner."""
@@ -35,7 +34,7 @@ def guide(dyes: Dyes | Bells, lamps: Lamps | None) -> Guide:
     if lamps is None:
         return ByAbsorption(dyes)
     if isinstance(dyes, Dyes):
-        return ByAbsorption(Dyes(lit_by(dyes.arrays, lamps.spread_power()), is_photon=False))
+        return ByAbsorption(Dyes(dyes.arrays.lit_by(lamps.spread_power()), is_photon=False))
     return ByLampsToo(ByAbsorption(dyes), lamps)
 
 

@@ -18,7 +18,7 @@ class Corner:
     parabola: Any
     """Edge (nm), and the coefficients of 1, d and d² at the distance d from it."""
     numbers: Any
-    """As `NodeArrays.fluorescence`; None where nothing fluoresces."""
+    """As the second half of the packed layout in docs/cube-format.md; None where nothing fluoresces."""
 
 
 class Lattice:
@@ -26,7 +26,7 @@ class Lattice:
 
     def __init__(self, arrays: NodeArrays) -> None:
         self.resolution = arrays.resolution
-        self.parabola = mi.Float(arrays.parabola.ravel())
+        self.parabola = mi.Float(arrays.reflectance.ravel())
         self.fluorescence = None
         if arrays.shape is not None:
             self.fluorescence = mi.Float(arrays.fluorescence.ravel())

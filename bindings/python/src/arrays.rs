@@ -1,0 +1,77 @@
+//! Arrays of numbers, in single and double precision.
+
+use numpy::{Element, PyReadonlyArray2};
+use pyo3::prelude::*;
+use rayon::prelude::*;
+use upglow_color::Xyz;
+
+use crate::errors::value_error;
+
+/// Single or double precision: what the numbers of an array ask for.
+pub(crate) trait Number: Element + Copy + Send + Sync + Into<f64> {
+    const NAN: Self;
+
+    /// The nearest number.
+    fn from_double(value: f64) -> Self;
+}
+
+impl Number for f64 {
+    const NAN: Self = Self::NAN;
+
+    fn from_double(value: f64) -> Self {
+        value
+    }
+}
+
+impl Number for f32 {
+    const NAN: Self = Self::NAN;
+
+    #[expect(clippy::cast_possible_truncation, reason = "rounding is what it is for")]
+    fn from_double(value: f64) -> Self {
+        value as Self
+    }
+}
+
+/// Tristimulus values in single precision.
+pub(crate) fn to_single(Xyz(xyz): Xyz) -> [f32; 3] {
+    xyz.map(f32::from_double)
+}
+
+/// Rows of three numbers.
+pub(crate) fn triples<T>(numbers: &[T]) -> &[[T; 3]] {
+    numbers.as_chunks().0
+}
+
+/// An RGB or XYZ array as rows, for a function that knows only single precision.
+pub(crate) fn single_rows<'a>(array: &'a PyReadonlyArray2<'_, f32>) -> PyResult<&'a [[f32; 3]]> {
+    Ok(triples(array.as_slice()?))
+}
+
+/// Numbers that a thread makes at a time: enough that handing them out costs nothing.
+const BATCH: usize = 4096;
+
+/// Fills rows of `width` numbers, each alone, so that threads change nothing. Few are filled here.
+pub(crate) fn fill<T: Send>(out: &mut [T], width: usize, work: impl Fn(usize, &mut [T]) + Sync) {
+    if width == 0 {
+        return;
+    }
+    let rows = (BATCH / width).max(1);
+    let batch = |(batch, out): (usize, &mut [T])| {
+        for (row, out) in out.chunks_exact_mut(width).enumerate() {
+            work(batch * rows + row, out);
+        }
+    };
+    if out.len() <= rows * width {
+        batch((0, out));
+    } else {
+        out.par_chunks_mut(rows * width).enumerate().for_each(batch);
+    }
+}
+
+/// Checks that `found` numbers are given for `expected` rows.
+pub(crate) fn check_count(what: &str, found: usize, expected: usize) -> PyResult<()> {
+    if found == expected {
+        return Ok(());
+    }
+    Err(value_error(format_args!("{found} {what}, expected {expected}, one for each color")))
+}
