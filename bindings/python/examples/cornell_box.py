@@ -47,8 +47,8 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Way:
-    """A way from a color to a surface."""
+class Upsampling:
+    """One of the compared ways to make a surface of a color."""
 
     title: str
     cube: upglow.Cube | None
@@ -75,7 +75,7 @@ def light(name: str, scale: float = 1.0) -> Scene:
     return upglow.mitsuba.spectrum((upglow.FINE_NM, power), scale, by="power")
 
 
-def box(way: Way, lamp: str, size: int) -> Scene:
+def box(upsampling: Upsampling, lamp: str, size: int) -> Scene:
     """The box: two units wide, open to the front."""
     at = mi.ScalarTransform4f
     white, turn = {"type": "ref", "id": "white"}, at().rotate
@@ -83,8 +83,8 @@ def box(way: Way, lamp: str, size: int) -> Scene:
         "floor": ([0, -1, 0], [1, 0, 0], -90, white),
         "ceiling": ([0, 1, 0], [1, 0, 0], 90, white),
         "back": ([0, 0, -1], [0, 1, 0], 0, white),
-        "left": ([-1, 0, 0], [0, 1, 0], 90, way.surface(MAGENTA)),
-        "right": ([1, 0, 0], [0, 1, 0], -90, way.surface(MINT)),
+        "left": ([-1, 0, 0], [0, 1, 0], 90, upsampling.surface(MAGENTA)),
+        "right": ([1, 0, 0], [0, 1, 0], -90, upsampling.surface(MINT)),
     }
     scene: Scene = {"type": "scene", "white": WHITE, "integrator": integrator()}
     for name, (position, axis, angle, bsdf) in walls.items():
@@ -102,7 +102,7 @@ def box(way: Way, lamp: str, size: int) -> Scene:
     return scene
 
 
-def flat(way: Way, lamp: str) -> Scene:
+def flat(upsampling: Upsampling, lamp: str) -> Scene:
     """The magenta wall by itself, under a light from everywhere."""
     where = mi.ScalarTransform4f().scale(9)
     return {
@@ -110,7 +110,7 @@ def flat(way: Way, lamp: str) -> Scene:
         "integrator": integrator(),
         "sensor": camera([0, 0, 1], 30, FLAT_SIZE, "box"),
         "light": {"type": "constant", "radiance": light(lamp)},
-        "wall": {"type": "rectangle", "to_world": where, "bsdf": way.surface(MAGENTA)},
+        "wall": {"type": "rectangle", "to_world": where, "bsdf": upsampling.surface(MAGENTA)},
     }
 
 
@@ -161,34 +161,36 @@ def difference(contract: upglow.Contract, xyz: Array, color: Color) -> float:
     return float(colour.delta_E(*labs, method="CIE 2000"))
 
 
-def measured(way: Way) -> list[str]:
+def measured(upsampling: Upsampling) -> list[str]:
     """What the magenta wall is under each light, in words for below the pictures."""
     told = []
     for lamp in RADIANCE:
-        xyz = render(flat(way, lamp), FLAT_SPP)[0].mean(axis=(0, 1))
+        xyz = render(flat(upsampling, lamp), FLAT_SPP)[0].mean(axis=(0, 1))
         x, y = xyz[:2] / xyz.sum()
         line = f"Y {xyz[1]:.3f}, x {x:.3f}, y {y:.3f}"
         if lamp == "daylight":
-            line = f"CIEDE2000 {difference(way.contract, xyz, MAGENTA):.1f}, {line}"
-        print(f"{way.title}, {lamp}: magenta wall XYZ {np.round(xyz, 4).tolist()}, {line}")
+            line = f"CIEDE2000 {difference(upsampling.contract, xyz, MAGENTA):.1f}, {line}"
+        print(f"{upsampling.title}, {lamp}: magenta wall XYZ {np.round(xyz, 4).tolist()}, {line}")
         told.append(line)
     return told
 
 
-def montage(pictures: list[list[NDArray[np.uint8]]], ways: list[Way], told: list[list[str]]) -> Any:
-    """Rows of lights and columns of ways, with captions."""
+def montage(
+    pictures: list[list[NDArray[np.uint8]]], upsamplings: list[Upsampling], told: list[list[str]]
+) -> Any:
+    """Rows of lights and columns of upsamplings, with captions."""
     size = pictures[0][0].shape[0]
     unit = size / 320
     gap, head, foot, side = (round(value * unit) for value in (10, 34, 30, 34))
-    width = side + len(ways) * (size + gap)
+    width = side + len(upsamplings) * (size + gap)
     height = head + len(pictures) * (size + foot) + gap // 2
     sheet = Image.new("RGB", (width, height), "white")
     draw = ImageDraw.Draw(sheet)
     large, small = (ImageFont.load_default(size=round(pt * unit)) for pt in (17, 12.5))
-    for column, way in enumerate(ways):
+    for column, upsampling in enumerate(upsamplings):
         left = side + column * (size + gap)
         middle = left + size / 2
-        draw.text((middle, head / 2), way.title, "black", large, anchor="mm")
+        draw.text((middle, head / 2), upsampling.title, "black", large, anchor="mm")
         for row, line in enumerate(pictures):
             top = head + row * (size + foot)
             sheet.paste(Image.fromarray(line[column]), (left, top))
@@ -235,28 +237,28 @@ def main() -> None:
             f"{name} {color}: {upglow.Kind(int(ours.kind)).name.lower()}, CIEDE2000 "
             f"{ours.de2000:.2f} with fluorescence, {theirs.de2000:.2f} with reflectance alone"
         )
-    ways = [
-        Way("sRGB, upsampled by the renderer", None, contract),
-        Way("upglow, reflectance", passive, contract),
-        Way("upglow, fluorescence", shining, contract),
+    upsamplings = [
+        Upsampling("sRGB, upsampled by the renderer", None, contract),
+        Upsampling("upglow, reflectance", passive, contract),
+        Upsampling("upglow, fluorescence", shining, contract),
     ]
-    told = [measured(way) for way in ways]
+    told = [measured(upsampling) for upsampling in upsamplings]
     pictures = []
     for lamp in RADIANCE:
         line = []
-        for way in ways:
+        for upsampling in upsamplings:
             spp = options.spp * PATIENCE[lamp]
-            xyz, cost = render(box(way, lamp, options.size), spp)
-            print(f"{way.title}, {lamp}: {spp} samples a pixel, {cost:.1f} µs each")
+            xyz, cost = render(box(upsampling, lamp, options.size), spp)
+            print(f"{upsampling.title}, {lamp}: {spp} samples a pixel, {cost:.1f} µs each")
             line.append(displayed(xyz, EXPOSURE[lamp]))
             if options.exr:
                 os.makedirs(options.exr, exist_ok=True)
-                name = f"{lamp} {way.title}.exr".replace(", ", "-").replace(" ", "-")
+                name = f"{lamp} {upsampling.title}.exr".replace(", ", "-").replace(" ", "-")
                 mi.Bitmap(xyz.astype(np.float32), mi.Bitmap.PixelFormat.XYZ).write(
                     str(options.exr / name)
                 )
         pictures.append(line)
-    montage(pictures, ways, told).save(options.out, optimize=True)
+    montage(pictures, upsamplings, told).save(options.out, optimize=True)
     print(f"wrote {options.out}")
 
 

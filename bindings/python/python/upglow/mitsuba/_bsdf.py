@@ -6,7 +6,7 @@ from typing import Any
 
 from ._color import Color
 from ._cube_source import cube_named, on_device
-from ._host import dr, mi, what_is_missing
+from ._host import dr, mi
 from ._lamps import Lamps
 from ._wrappers import Fluorescence
 
@@ -22,8 +22,6 @@ def bsdf_class() -> Any:
         """
 
         def __init__(self, props: Any) -> None:
-            if missing := what_is_missing():
-                raise ValueError(missing)
             mi.BSDF.__init__(self, props)
             if "cube" not in props:
                 raise ValueError("no cube, expected the path of a cube's file")

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from typing import Any
 
-from ._host import dr, is_scalar, mi, ratio, what_is_missing
+from ._host import dr, is_scalar, mi, ratio
 from ._lamps import Lamps
 from ._wrappers import Fluorescence, fluorescent_surfaces, no_fluorescence
 
@@ -36,8 +36,6 @@ def integrator_class() -> Any:
         """Unidirectional path tracing with emitter sampling, for fluorescent surfaces."""
 
         def __init__(self, props: Any) -> None:
-            if missing := what_is_missing():
-                raise ValueError(missing)
             mi.SamplingIntegrator.__init__(self, props)
             self._max_depth = _depth(props, "max_depth", -1, 0)
             self._rr_depth = _depth(props, "rr_depth", 5, 1)
