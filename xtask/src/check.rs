@@ -13,8 +13,8 @@ use crate::{c_library, layers, mitsuba, python_wheel, readme, tables};
 /// Set for the tests under `--slow`, so that they may take larger samples.
 const SLOW_VARIABLE: &str = "UPGLOW_SLOW";
 
-/// The package whose program the README's examples run.
-const PROGRAM_PACKAGE: &str = "upglow-cli";
+/// The packages whose programs the README's examples and the tests of the bindings run.
+const PROGRAM_PACKAGES: [&str; 2] = ["upglow-cli", "upglow-study"];
 
 /// Which tests run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -233,11 +233,13 @@ fn run_examples(examples: &[readme::Example], bin_dir: &Path) -> Result<Outcome,
     Ok(Outcome::Passed)
 }
 
-/// Builds the program as a user would; the folder it lies in.
+/// Builds the programs as a user would; the folder they lie in.
 pub(crate) fn release_bin_dir(root: &Path) -> Result<PathBuf, StepError> {
-    let mut build = cargo(root, "build --release");
-    build.args(["--package", PROGRAM_PACKAGE]);
-    finish(build)?;
+    for package in PROGRAM_PACKAGES {
+        let mut build = cargo(root, "build --release");
+        build.args(["--package", package]);
+        finish(build)?;
+    }
     Ok(target_dir(root)?.join("release"))
 }
 

@@ -5,16 +5,24 @@ use serde_json::Value;
 /// Each crate of the workspace, and the crates of the workspace that it may depend on.
 ///
 /// Development dependencies count as well: a test that needs an upper layer belongs there.
-const ALLOWED: [(&str, &[&str]); 10] = [
+const ALLOWED: [(&str, &[&str]); 11] = [
     ("upglow-color", &[]),
     ("upglow", &["upglow-color"]),
     ("upglow-shader", &["upglow", "upglow-color"]),
     ("upglow-fit", &["upglow", "upglow-color"]),
     ("upglow-image", &["upglow-fit", "upglow", "upglow-color"]),
-    ("upglow-study", &["upglow-fit", "upglow", "upglow-color"]),
+    ("upglow-terminal", &["upglow-fit", "upglow"]),
+    ("upglow-study", &["upglow-terminal", "upglow-fit", "upglow", "upglow-color"]),
     (
         "upglow-cli",
-        &["upglow-study", "upglow-image", "upglow-fit", "upglow-shader", "upglow", "upglow-color"],
+        &[
+            "upglow-terminal",
+            "upglow-image",
+            "upglow-fit",
+            "upglow-shader",
+            "upglow",
+            "upglow-color",
+        ],
     ),
     ("upglow-python", &["upglow-study", "upglow-fit", "upglow", "upglow-color"]),
     ("upglow-c", &["upglow", "upglow-color"]),

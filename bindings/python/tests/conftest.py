@@ -46,3 +46,13 @@ def program() -> str:
     if path is None:
         pytest.skip("UPGLOW_PROGRAM names no program `upglow`")
     return path
+
+
+@pytest.fixture(scope="session")
+def study_program(program: str) -> str:
+    """The program `upglow-study`, which lies beside `upglow`."""
+    path = Path(program)
+    study = path.with_name(f"upglow-study{path.suffix}")
+    if not study.is_file():
+        pytest.skip("no program `upglow-study` beside `upglow`")
+    return str(study)

@@ -113,8 +113,8 @@ def test_mixed_spectra_are_means_and_mixed_features_are_not() -> None:
     assert upglow.FINE_NM[features[0].argmax()] == 535
 
 
-def test_the_numbers_are_those_of_the_programs_figures(program, tmp_path) -> None:
-    command = [program, "figures", "--only", "10", "--resolution", "4", "--json", "--quiet"]
+def test_the_numbers_are_those_of_the_programs_figures(study_program, tmp_path) -> None:
+    command = [study_program, "figures", "--only", "10", "--resolution", "4", "--json", "--quiet"]
     done = subprocess.run(
         [*command, "--out", str(tmp_path)], capture_output=True, text=True, check=True
     )

@@ -2,6 +2,7 @@
 
 mod pictures;
 
+use std::ffi::OsString;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -11,7 +12,7 @@ use upglow::{Accounting, CoefficientTable, Cube, Interpolation, Mixing, QuantumY
 use upglow_color::{Adaptation, Metric};
 use upglow_fit::Method;
 use upglow_shader::Language;
-use upglow_study::Display;
+use upglow_terminal::{in_range, threads, whole};
 
 pub(crate) use pictures::{
     BakeArgs, BakeForm, CheckArgs, ExamplesArgs, LintArgs, PictureArgs, ReadArgs, SampleName,
@@ -55,42 +56,20 @@ pub(crate) enum Command {
     Lint(LintArgs),
     /// Draw three pictures to try the other commands with
     Examples(ExamplesArgs),
-    /// Draw the seed paper's eight figures from real computation, and two of ours; minutes
-    Figures(FiguresArgs),
-    /// Measure the seed paper's claims and print a report in Markdown; minutes
-    Reproduce(ReproduceArgs),
+    /// Moved to the program `upglow-study`
+    #[command(hide = true)]
+    Figures(MovedArgs),
+    /// Moved to the program `upglow-study`
+    #[command(hide = true)]
+    Reproduce(MovedArgs),
 }
 
+/// The words after a command that is now in another program.
 #[derive(Clone, Debug, clap::Args)]
-pub(crate) struct FiguresArgs {
-    /// Folder for the SVG and PNG files; made if it is not there
-    #[arg(long, default_value = "figures", value_name = "FOLDER")]
-    pub(crate) out: PathBuf,
-    /// Draw one figure only: 1 to 8 are the paper's, 9 and 10 ours
-    #[arg(long, value_name = "N")]
-    pub(crate) only: Option<u32>,
-    /// Colors: as-srgb (ACEScg numbers shown as sRGB, as in the paper) or correct (color-managed)
-    #[arg(long, default_value = "as-srgb", value_name = "NAME")]
-    pub(crate) display: Display,
-    /// Nodes along each axis of the cubes, 2 to 256; the paper has 32
-    #[arg(long, default_value = "32", value_name = "N", value_parser = resolution)]
-    pub(crate) resolution: usize,
-    /// Threads; the files do not depend on it [default: one for each core]
-    #[arg(long, value_name = "N", value_parser = threads)]
-    pub(crate) threads: Option<NonZeroUsize>,
-}
-
-#[derive(Clone, Debug, clap::Args)]
-pub(crate) struct ReproduceArgs {
-    /// Write the report to this file too
-    #[arg(long, short, value_name = "FILE")]
-    pub(crate) output: Option<PathBuf>,
-    /// Nodes along each axis of the cubes, 2 to 256; the paper has 32
-    #[arg(long, default_value = "32", value_name = "N", value_parser = resolution)]
-    pub(crate) resolution: usize,
-    /// Threads; the report does not depend on it [default: one for each core]
-    #[arg(long, value_name = "N", value_parser = threads)]
-    pub(crate) threads: Option<NonZeroUsize>,
+#[command(disable_help_flag = true)]
+pub(crate) struct MovedArgs {
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+    _words: Vec<OsString>,
 }
 
 #[derive(Clone, Debug, clap::Args)]
@@ -346,10 +325,6 @@ fn number(text: &str) -> Result<f64, String> {
     text.parse().map_err(|_| format!("{text:?}, expected a number"))
 }
 
-fn whole<T: FromStr>(text: &str, expected: &str) -> Result<T, String> {
-    text.parse().map_err(|_| format!("{text:?}, expected {expected}"))
-}
-
 fn count(text: &str) -> Result<u32, String> {
     whole(text, "a whole number of 0 or more")
 }
@@ -368,29 +343,6 @@ fn resolution(text: &str) -> Result<usize, String> {
 
 fn table_resolution(text: &str) -> Result<usize, String> {
     in_range(CoefficientTable::RESOLUTIONS, text)
-}
-
-fn in_range([least, most]: [usize; 2], text: &str) -> Result<usize, String> {
-    let expected = format!("a whole number from {least} to {most}");
-    let found = whole(text, &expected)?;
-    if (least..=most).contains(&found) {
-        Ok(found)
-    } else {
-        Err(format!("{found}, expected {expected}"))
-    }
-}
-
-/// More threads than this are a typing error: they would take the machine's memory.
-const MOST_THREADS: usize = 1024;
-
-fn threads(text: &str) -> Result<NonZeroUsize, String> {
-    let expected = format!("a whole number from 1 to {MOST_THREADS}");
-    let found: NonZeroUsize = whole(text, &expected)?;
-    if found.get() <= MOST_THREADS {
-        Ok(found)
-    } else {
-        Err(format!("{found}, expected {expected}"))
-    }
 }
 
 #[cfg(test)]

@@ -5,28 +5,17 @@
 
 mod args;
 mod commands;
-mod failure;
 mod files;
 mod output;
 mod pictures;
 mod plan;
 mod plot;
-mod progress;
 
 use std::process::ExitCode;
 
-use clap::Parser;
-
 fn main() -> ExitCode {
     keep_quiet_about_damaged_files();
-    let args = match args::Args::try_parse() {
-        Ok(args) => args,
-        Err(error) => return failure::report_usage(&error),
-    };
-    match commands::run(args) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => failure.report(),
-    }
+    upglow_terminal::run(commands::run)
 }
 
 /// A damaged OpenEXR block ends in an error of one line, not in a panic's message before it.

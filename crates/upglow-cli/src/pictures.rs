@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use upglow_color::RgbSpace;
 use upglow_image::{Assumed, Encoding};
+use upglow_terminal::{Failure, io_message};
 
 use crate::args::PictureArgs;
-use crate::failure::{Failure, io_message};
 use crate::plan;
 
 /// Suffixes of the pictures that are taken from a folder.

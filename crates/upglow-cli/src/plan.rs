@@ -10,9 +10,9 @@ use upglow::{
 };
 use upglow_color::{Contract, Illuminant, LinearRgb, Observer, RgbSpace};
 use upglow_fit::{FitOptions, Fitter};
+use upglow_terminal::Failure;
 
 use crate::args::{BuildArgs, ColorArgs, ModelName};
-use crate::failure::Failure;
 use crate::files;
 
 /// A cube to build.
@@ -168,7 +168,7 @@ fn dye_set(text: &str) -> Result<DyeSet, Failure> {
 fn folder_failure(folder: &Path, error: DyeSetError) -> Failure {
     match error {
         DyeSetError::Read { path, source } => {
-            let found = crate::failure::io_message(&source);
+            let found = upglow_terminal::io_message(&source);
             Failure::file(&path, format_args!("{found}, expected a folder of CSV files"))
         }
         DyeSetError::Csv { path, source } => Failure::file(&path, source),

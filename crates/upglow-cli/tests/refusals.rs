@@ -326,3 +326,14 @@ fn a_full_or_closed_standard_output() {
         .unwrap();
     assert_eq!(String::from_utf8(output.stderr).unwrap(), "");
 }
+
+#[test]
+fn a_command_of_the_study_says_which_program_has_it() {
+    let folder = Folder::new();
+    for command in ["figures", "reproduce"] {
+        let expected = format!(
+            "{command}: now a command of the program upglow-study, run `upglow-study {command}`"
+        );
+        assert_eq!(folder.refused(2, &format!("{command} -o a.md --only 4 --help")), expected);
+    }
+}

@@ -1,30 +1,21 @@
-//! The seed paper's figures and claims, computed.
+//! The numbers behind the figures of König et al. 2020, for any cube or contract.
 //!
-//! Numbers and drawings are apart: what a figure shows is plain data ([`Layer`], [`standing_layer`],
-//! [`dye_spectra`] …), and the feature `drawing`, on by default, draws it.
-mod claims;
-mod cubes;
-mod data;
-mod error;
-mod field;
-#[cfg(feature = "drawing")]
-mod figures;
-#[cfg(feature = "drawing")]
-mod fonts;
-#[cfg(feature = "drawing")]
-mod raster;
-mod report;
-mod spread;
-#[cfg(feature = "drawing")]
-mod svg;
+//! What a figure shows is plain data: [`Layer`], [`standing_layer`], [`dye_spectra`] … The program
+//! `upglow-study`, in the same package, draws the paper's figures from it and measures the paper's
+//! claims.
 
-pub use claims::{Claim, Number, Verdict};
-pub use cubes::{Cubes, StudyCube};
-pub use data::{
-    ChromaticityDiagram, DyeSpectra, Layer, Mixing, dye_spectra, node_colors, shares,
-    solid_surface, standing_layer,
-};
-pub use error::StudyError;
-#[cfg(feature = "drawing")]
-pub use figures::{Display, Figure, FigureOptions, figures};
-pub use report::{reproduce, to_markdown};
+mod chromaticity;
+mod dye_spectra;
+mod layer;
+mod mixing;
+mod node_colors;
+mod reachability;
+mod solid_surface;
+
+pub use chromaticity::ChromaticityDiagram;
+pub use dye_spectra::{DyeSpectra, dye_spectra};
+pub use layer::Layer;
+pub use mixing::Mixing;
+pub use node_colors::node_colors;
+pub use reachability::{shares, standing_layer};
+pub use solid_surface::solid_surface;

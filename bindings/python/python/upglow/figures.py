@@ -1,4 +1,4 @@
-"""The numbers behind the figures that ``upglow figures`` draws, as arrays, for any cube or contract.
+"""The numbers behind the figures that ``upglow-study`` draws, as arrays, for any cube or contract.
 
     >>> import upglow
     >>> from upglow import figures
@@ -10,7 +10,7 @@ With matplotlib, figure 10a is ``plt.pcolormesh(f.red, f.green, f.kind[0])`` of
 ``f = figures.reachability(blue=0.0)``, and the diagram is ``plt.plot(*diagram.locus_xy.T)``.
 
 ======================  ====================================================================
-function                figures of ``upglow figures``
+function                figures of ``upglow-study figures``
 ======================  ====================================================================
 `chromaticity`          the diagram of 1e, 1f and 2a: spectral locus, primaries, white
 `node_colors`           1e, 1f: colors of all nodes; and their errors, for a histogram

@@ -8,12 +8,10 @@ use upglow_color::{Grid, Illuminant};
 use upglow_image::{
     BakeError, BakeOptions, Baked, Baker, Form, LinearPictureError, MaterialWay, Repair, Sample,
 };
+use upglow_terminal::{Bar, Failure, on_threads};
 
-use super::on_threads;
 use crate::args::{BakeArgs, BakeForm, SampleName};
-use crate::failure::Failure;
 use crate::output::{Format, Lines, Report};
-use crate::progress::Bar;
 use crate::{files, pictures, plan};
 
 #[derive(Clone, Debug, Serialize)]

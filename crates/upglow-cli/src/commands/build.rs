@@ -5,15 +5,13 @@ use std::time::Instant;
 use serde::Serialize;
 use upglow::{Model, QuantumYield};
 use upglow_fit::{BuildError, Watch, build_cube};
+use upglow_terminal::{Bar, Failure, on_threads};
 
-use super::on_threads;
 use super::summary::SummaryReport;
 use crate::args::BuildArgs;
-use crate::failure::Failure;
 use crate::files;
 use crate::output::{Format, Lines, Report, warn};
 use crate::plan::BuildPlan;
-use crate::progress::Bar;
 
 #[derive(Clone, Debug, Serialize)]
 struct BuildReport {

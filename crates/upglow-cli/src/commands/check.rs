@@ -11,13 +11,11 @@ use upglow_image::{
     Assumed, CheckReport, CheckedPicture, Counts, Flaw, Judge, LinearPicture, Located, WorstTexel,
     check_page,
 };
+use upglow_terminal::{Bar, Failure, on_threads};
 
 use super::bake::picture_failure;
-use super::on_threads;
 use crate::args::CheckArgs;
-use crate::failure::Failure;
 use crate::output::{Format, Lines, Report};
-use crate::progress::Bar;
 use crate::{files, pictures, plan};
 
 /// Rows that are read at a time: enough to keep every core busy.

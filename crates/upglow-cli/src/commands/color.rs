@@ -8,12 +8,12 @@ use upglow_color::{
     RgbSpace, StandingKind, Xyz,
 };
 use upglow_fit::{FitOptions, Fitter, Method};
+use upglow_terminal::Failure;
 
 use super::color_report::{
     ColorReport, CurvesReport, Drawing, LightReport, PartReport, StandingReport,
 };
 use crate::args::ColorArgs;
-use crate::failure::Failure;
 use crate::files;
 use crate::output::Format;
 use crate::plan::{ColorPlan, Way};

@@ -7,9 +7,9 @@ use upglow_color::RgbSpace;
 use upglow_image::{
     EXAMPLE_PICTURES, ExamplePicture, ExrDescription, ExrWriter, WriteExrError, chromaticities,
 };
+use upglow_terminal::Failure;
 
 use crate::args::ExamplesArgs;
-use crate::failure::Failure;
 use crate::files;
 use crate::output::{Format, Lines, Report};
 

@@ -7,13 +7,11 @@ use serde::Serialize;
 use upglow::{Cube, Model, Node, Vertex};
 use upglow_fit::{BuildError, fit_coefficients};
 use upglow_shader::{Language, Shader, ShaderError};
+use upglow_terminal::{Bar, Failure, on_threads};
 
-use super::on_threads;
 use crate::args::{ExportArgs, ExportFormat};
-use crate::failure::Failure;
 use crate::files;
 use crate::output::{Format, Lines, Report, unsigned_zero, warn};
-use crate::progress::Bar;
 
 const HEADER: &str = "r,g,b,c0,c1,c2,shift_nm,width_nm,slope_per_nm,dye_a,dye_b,weight,\
                       concentration,emission_peak_nm,stokes_shift_nm,de2000";

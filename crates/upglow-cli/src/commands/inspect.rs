@@ -2,11 +2,11 @@
 
 use serde::Serialize;
 use upglow::{AnalyticModel, Cube, DyeModel, Model};
+use upglow_terminal::{Failure, io_message};
 
 use super::inspect_table;
 use super::summary::SummaryReport;
 use crate::args::InspectArgs;
-use crate::failure::{Failure, io_message};
 use crate::files;
 use crate::output::{Format, Lines, Report, Side, Table};
 

@@ -8,9 +8,9 @@ use serde::Serialize;
 use upglow::CoefficientTable;
 use upglow_color::Contract;
 use upglow_fit::round_trip;
+use upglow_terminal::{Failure, io_message};
 
 use crate::args::InspectArgs;
-use crate::failure::{Failure, io_message};
 use crate::output::{Format, Lines, Report};
 use crate::{files, plan};
 

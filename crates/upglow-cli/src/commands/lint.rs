@@ -4,9 +4,9 @@ use std::path::Path;
 
 use serde::Serialize;
 use upglow_image::{Depth, ExrReader, Lint, Severity, baked_form, lint};
+use upglow_terminal::Failure;
 
 use crate::args::LintArgs;
-use crate::failure::Failure;
 use crate::output::{Format, Lines, Report};
 use crate::pictures;
 

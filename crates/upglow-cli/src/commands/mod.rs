@@ -7,20 +7,16 @@ mod color;
 mod color_report;
 mod examples;
 mod export;
-mod figures;
 mod inspect;
 mod inspect_table;
 mod lint;
 mod read;
-mod reproduce;
-mod study;
 mod summary;
 mod verify;
 
-use std::num::NonZeroUsize;
+use upglow_terminal::Failure;
 
 use crate::args::{Args, Command};
-use crate::failure::Failure;
 use crate::output::Format;
 
 /// Does what was asked for.
@@ -37,19 +33,15 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
         Command::Read(read) => read::run(&read, format),
         Command::Lint(lint) => lint::run(&lint, format),
         Command::Examples(examples) => examples::run(&examples, format),
-        Command::Figures(figures) => figures::run(&figures, format, args.quiet),
-        Command::Reproduce(reproduce) => reproduce::run(&reproduce, format, args.quiet),
+        Command::Figures(_) => Err(moved("figures")),
+        Command::Reproduce(_) => Err(moved("reproduce")),
     }
 }
 
-/// Runs `work` on so many threads; one for each core without a number.
-fn on_threads<T: Send>(
-    threads: Option<NonZeroUsize>,
-    work: impl FnOnce() -> T + Send,
-) -> Result<T, Failure> {
-    let count = threads.map_or(0, NonZeroUsize::get);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build().map_err(|error| {
-        Failure::input("--threads", format_args!("{error}, expected fewer threads"))
-    })?;
-    Ok(pool.install(work))
+/// The program that has a command which was once here.
+fn moved(command: &'static str) -> Failure {
+    Failure::option(
+        command,
+        format_args!("now a command of the program upglow-study, run `upglow-study {command}`"),
+    )
 }

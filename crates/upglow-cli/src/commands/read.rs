@@ -5,9 +5,9 @@ use upglow::{Fluorescence, Material, Model};
 use upglow_image::{
     ExrReader, MaterialPicture, SpectralPicture, SpectralPictureError, SpectralTexel, baked_form,
 };
+use upglow_terminal::Failure;
 
 use crate::args::ReadArgs;
-use crate::failure::Failure;
 use crate::output::{Format, Lines, Report, Side, Table, unsigned_zero};
 use crate::pictures;
 

@@ -2,13 +2,11 @@
 
 use serde::Serialize;
 use upglow_fit::{Check, Offender, Place, Verdict, VerifyOptions, VerifyReport, verify};
+use upglow_terminal::{Bar, Failure, on_threads};
 
-use super::on_threads;
 use crate::args::VerifyArgs;
-use crate::failure::Failure;
 use crate::files;
 use crate::output::{Format, Report, Side, Table};
-use crate::progress::Bar;
 
 #[derive(Clone, Debug, Serialize)]
 struct VerificationReport {

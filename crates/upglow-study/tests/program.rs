@@ -1,0 +1,71 @@
+//! The program on small cubes.
+#![expect(clippy::unwrap_used, reason = "a test that cannot start has failed")]
+
+use std::path::Path;
+use std::process::Output;
+
+use assert_cmd::Command;
+
+/// Runs the program in a folder with these words, split at blanks.
+fn run(folder: &Path, words: &str) -> Output {
+    let mut program = Command::new(assert_cmd::cargo::cargo_bin!("upglow-study"));
+    program.args(words.split_whitespace()).current_dir(folder).output().unwrap()
+}
+
+/// What the program prints, which must do its work without a word on standard error.
+fn done(folder: &Path, words: &str) -> String {
+    let Output { status, stdout, stderr } = run(folder, words);
+    assert!(status.success() && stderr.is_empty(), "{words}");
+    String::from_utf8(stdout).unwrap()
+}
+
+/// The line of a program that refuses with this status, and writes nothing.
+fn refused(folder: &Path, expected: i32, words: &str) -> String {
+    let Output { status, stdout, stderr } = run(folder, words);
+    assert_eq!((status.code(), &stdout[..]), (Some(expected), &b""[..]), "{words}");
+    assert_eq!(folder.read_dir().unwrap().count(), 0, "{words}");
+    String::from_utf8(stderr).unwrap()
+}
+
+fn read(folder: &Path, name: &str) -> Vec<u8> {
+    std::fs::read(folder.join(name)).unwrap()
+}
+
+#[test]
+fn a_figure_is_written_as_svg_and_png_and_is_the_same_twice() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    for out in ["a", "b"] {
+        done(folder, &format!("figures --only 4 --resolution 4 --out {out}"));
+    }
+    for name in ["figure-04-features.svg", "figure-04-features.png"] {
+        let drawn = read(folder, &format!("a/{name}"));
+        assert!(drawn.len() > 1000, "{name}");
+        assert_eq!(drawn, read(folder, &format!("b/{name}")), "{name}");
+    }
+}
+
+#[test]
+fn a_figure_that_is_not_there_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let refused = refused(folder, 2, "figures --only 11 --resolution 4");
+    assert_eq!(refused, "upglow-study: --only: figure 11, expected 1 to 10\n");
+}
+
+#[test]
+fn the_report_is_the_same_on_paper_and_on_the_screen() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let printed = done(folder, "reproduce --resolution 5 -o report.md");
+    assert_eq!(printed.as_bytes(), read(folder, "report.md"));
+    assert!(printed.starts_with("# The paper's claims, measured"));
+}
+
+#[test]
+fn the_claims_are_printed_as_one_json_document_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let printed = done(folder.path(), "reproduce --resolution 4 --json");
+    assert!(printed.starts_with(r#"{"resolution":4,"claims":[{"id":"metric-time","section":"#));
+    assert_eq!(printed.matches('\n').count(), 1);
+}
