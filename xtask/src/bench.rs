@@ -3,149 +3,13 @@
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
-use std::process::{Command, ExitCode, Stdio};
+use std::process::Stdio;
 use std::time::{SystemTime, UNIX_EPOCH};
 
-/// One line of the table: what is measured, by which bench, and how fast it should be.
-struct Goal {
-    job: &'static str,
-    /// File, function and argument of the bench, joined by `/`.
-    bench: &'static str,
-    goal: &'static str,
-    peer: &'static str,
-}
+use crate::step::{StepError, cargo, output_of};
 
-const GOALS: &[Goal] = &[
-    Goal {
-        job: "build, defaults: 32³, eight dyes, ΔE00, slope limit",
-        bench: "build/default/32",
-        goal: "1.6 s",
-        peer: "the seed paper: 3 h 20 min on its machine",
-    },
-    Goal { job: "the same at 64³", bench: "build/default/64", goal: "12 s", peer: "" },
-    Goal { job: "the same at 32³ with `wide14`", bench: "build/wide14", goal: "3 s", peer: "" },
-    Goal {
-        job: "build, reflectance only, 32³ nodes",
-        bench: "build/reflectance",
-        goal: "0.2 s",
-        peer: "the next line",
-    },
-    Goal {
-        job: "crate `rgb2spec` 0.1.1: sRGB reflectance, 3·32³ nodes, one thread",
-        bench: "build/peer_rgb2spec_srgb",
-        goal: "",
-        peer: "",
-    },
-    Goal { job: "build, analytic fluorescence, 32³", bench: "build/analytic", goal: "", peer: "" },
-    Goal {
-        job: "look-up, random RGB, 32³, material ready to evaluate",
-        bench: "lookup/random/32",
-        goal: "40 ns",
-        peer: "rgb2spec fetch: 56 to 84 ns for 3 numbers",
-    },
-    Goal {
-        job: "the same at 64³",
-        bench: "lookup/random/64",
-        goal: "80 ns",
-        peer: "rgb2spec fetch: 120 to 215 ns",
-    },
-    Goal {
-        job: "reflectance at 4 wavelengths, no dyes",
-        bench: "evaluate/reflectance4/Passive",
-        goal: "6 ns",
-        peer: "",
-    },
-    Goal {
-        job: "the same, random colors of the default cube",
-        bench: "built_cube/reflectance4/All",
-        goal: "6 ns",
-        peer: "",
-    },
-    Goal {
-        job: "the same, four different pairs of dyes",
-        bench: "evaluate/reflectance4/Dyes",
-        goal: "6 ns",
-        peer: "",
-    },
-    Goal {
-        job: "reflectance at 8 wavelengths, no dyes",
-        bench: "evaluate/reflectance8/Passive",
-        goal: "10 ns",
-        peer: "",
-    },
-    Goal {
-        job: "the same, random colors of the default cube",
-        bench: "built_cube/reflectance8/All",
-        goal: "10 ns",
-        peer: "",
-    },
-    Goal {
-        job: "the same, four different pairs of dyes",
-        bench: "evaluate/reflectance8/Dyes",
-        goal: "10 ns",
-        peer: "",
-    },
-    Goal {
-        job: "re-radiation, four different pairs of dyes",
-        bench: "evaluate/reradiation/Dyes",
-        goal: "30 ns",
-        peer: "tabulated CDFs, 9 MB a material",
-    },
-    Goal {
-        job: "sampling the incident wavelength, the same",
-        bench: "sample/sample_incident/Dyes",
-        goal: "30 ns",
-        peer: "",
-    },
-    Goal {
-        job: "sampling the outgoing wavelength, the same",
-        bench: "sample/sample_outgoing/Dyes",
-        goal: "30 ns",
-        peer: "",
-    },
-    Goal {
-        job: "its density, incident, the same",
-        bench: "sample/incident_pdf/Dyes",
-        goal: "30 ns",
-        peer: "",
-    },
-    Goal {
-        job: "its density, outgoing, the same",
-        bench: "sample/outgoing_pdf/Dyes",
-        goal: "30 ns",
-        peer: "",
-    },
-    Goal {
-        job: "10⁷ RGB to XYZ, random, 32³, per color",
-        bench: "batch/xyz_of_random/32",
-        goal: "twice the next line",
-        peer: "",
-    },
-    Goal {
-        job: "reading and writing the arrays, per color",
-        bench: "batch/copy",
-        goal: "",
-        peer: "",
-    },
-    Goal {
-        job: "one material a texel, random sRGB, one core",
-        bench: "polish/polish/Srgb",
-        goal: "1 µs",
-        peer: "",
-    },
-    Goal {
-        job: "the same in one step (`bake --fast`)",
-        bench: "polish/interpolate/Srgb",
-        goal: "0.48 µs",
-        peer: "",
-    },
-    Goal {
-        job: "what a texel needs, muted colors, one core",
-        bench: "standing/kind_of_muted_colors",
-        goal: "",
-        peer: "",
-    },
-];
+/// Lines of the table: what is measured, by which bench, how fast it should be, what others take.
+const GOALS: &str = include_str!("../goals.csv");
 
 /// A bench and its median, as printed; per item where the bench counts items.
 #[derive(Clone, Debug, PartialEq)]
@@ -155,31 +19,13 @@ struct Measured {
 }
 
 /// Runs every bench, prints the table and writes it.
-pub(crate) fn run(root: &Path) -> ExitCode {
-    let mut command = Command::new("cargo");
-    command.args(["bench", "--quiet", "--workspace", "--benches"]).current_dir(root);
-    let output = match command.stderr(Stdio::inherit()).output() {
-        Ok(output) if output.status.success() => output.stdout,
-        Ok(output) => {
-            println!("{}\nbench: cargo bench failed", String::from_utf8_lossy(&output.stdout));
-            return ExitCode::FAILURE;
-        }
-        Err(error) => {
-            println!("bench: cargo did not start: {error}");
-            return ExitCode::FAILURE;
-        }
-    };
-    let measured = parse(&String::from_utf8_lossy(&output));
-    let page = page(&measured, &machine(), &today());
+pub(crate) fn run(root: &Path) -> Result<(), StepError> {
+    let mut command = cargo(root, "bench --quiet --workspace --benches");
+    command.stderr(Stdio::inherit());
+    let page = page(&parse(&output_of(command)?), &machine(), &today());
     println!("{page}");
     let path = root.join("docs/PERFORMANCE.md");
-    match fs::write(&path, page) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            println!("bench: {}: {error}", path.display());
-            ExitCode::FAILURE
-        }
-    }
+    fs::write(&path, page).map_err(StepError::file(&path))
 }
 
 /// Every leaf of divan's trees: `file/function/argument` and its median.
@@ -229,11 +75,10 @@ fn page(measured: &[Measured], machine: &str, today: &str) -> String {
         "# Performance\n\nMedians from `cargo xtask bench`, which writes this page. Machine: \
          {machine}. Date: {today}.\n\n| job | measured | goal | peer |\n| --- | --- | --- | --- |\n"
     );
-    for goal in GOALS {
-        let median = measured.iter().find(|m| m.bench == goal.bench);
+    for [job, bench, goal, peer] in goals() {
+        let median = measured.iter().find(|m| m.bench == bench);
         let median = median.map_or("not measured", |m| &m.median);
-        writeln!(page, "| {} | {median} | {} | {} |", goal.job, goal.goal, goal.peer)
-            .expect("a string takes any text");
+        writeln!(page, "| {job} | {median} | {goal} | {peer} |").expect("a string takes any text");
     }
     page.push_str(
         "\nWhat limits them: [where-the-time-goes.md](where-the-time-goes.md).\n\nEvery bench:\n\n| bench | median |\n| --- | --- |\n",
@@ -242,6 +87,13 @@ fn page(measured: &[Measured], machine: &str, today: &str) -> String {
         writeln!(page, "| `{bench}` | {median} |").expect("a string takes any text");
     }
     page
+}
+
+/// Job, bench, goal and peer of each line.
+fn goals() -> Vec<[String; 4]> {
+    let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_reader(GOALS.as_bytes());
+    let lines = reader.deserialize().collect::<Result<_, _>>();
+    lines.expect("a test reads the same lines")
 }
 
 fn machine() -> String {
@@ -307,6 +159,11 @@ mod tests {
         let mut counted = Measured { bench: "lookup".into(), median: "40 µs".into() };
         set_time_per_item(&mut counted, "25 Mitem/s");
         assert_eq!(counted.median, "40.0 ns");
+    }
+
+    #[test]
+    fn every_goal_names_its_bench() {
+        assert!(goals().iter().all(|[job, bench, ..]| !job.is_empty() && bench.contains('/')));
     }
 
     #[test]

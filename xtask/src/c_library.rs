@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::check::{Outcome, Step, StepError};
+use crate::step::{Step, StepError, target_dir};
 
 mod agreement;
 mod header;
@@ -11,28 +11,28 @@ mod programs;
 
 pub(crate) use header::write as write_header;
 pub(crate) use install::install;
-pub(crate) use programs::missing;
+pub(crate) use programs::need;
 
 /// Where the library's sources are, below the workspace's root.
 const FOLDER: &str = "bindings/c";
 
 /// What `cargo xtask check` does about the library.
-pub(crate) const STEPS: [(&str, Step); 6] = [
-    ("C header", header::check),
-    ("C library", installs),
-    ("C programs", programs::run),
-    ("C programs under valgrind", programs::run_under_valgrind),
-    ("C programs by pkg-config", programs::run_by_pkg_config),
-    ("C programs by CMake", programs::run_by_cmake),
+pub(crate) const STEPS: [Step; 6] = [
+    Step { name: "c-header", about: "upglow.h is what the sources make", run: header::check },
+    Step { name: "c-library", about: "the C library builds and installs", run: installs },
+    Step { name: "c-programs", about: "its examples and tests run", run: programs::run },
+    Step { name: "c-valgrind", about: "and touch no foreign memory", run: programs::run_valgrind },
+    Step { name: "c-pkg-config", about: "and build by pkg-config", run: programs::run_pkg_config },
+    Step { name: "c-cmake", about: "and build by CMake", run: programs::run_cmake },
 ];
 
 /// Where the checks install the library and build their programs.
 fn scratch(root: &Path) -> Result<PathBuf, StepError> {
-    Ok(crate::check::target_dir(root)?.join("c-library"))
+    Ok(target_dir(root)?.join("c-library"))
 }
 
-fn installs(root: &Path) -> Result<Outcome, StepError> {
-    prefix(root).map(|_| Outcome::Passed)
+fn installs(root: &Path) -> Result<(), StepError> {
+    prefix(root).map(|_| ())
 }
 
 /// Installs the library for checks; below which folder.

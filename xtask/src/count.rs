@@ -8,7 +8,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::check::{StepError, cargo, output_of};
+use crate::step::{StepError, cargo, output_of, read};
 
 /// Comments by line, and languages by the ends of their files' names.
 const LANGUAGES: [(&str, &str, &[&str]); 4] = [
@@ -86,10 +86,6 @@ fn has_ending(path: &Path, endings: &[&str]) -> bool {
     path.extension().is_some_and(|ending| endings.iter().any(|known| ending == *known))
 }
 
-fn read(path: &Path) -> Result<String, StepError> {
-    fs::read_to_string(path).map_err(|source| StepError::File { path: path.to_owned(), source })
-}
-
 /// Lines of code in one file, formatted as the check asks for.
 fn source_lines(text: &str, comment: &str) -> usize {
     let mut lines = text.lines();
@@ -129,10 +125,10 @@ fn skip_item<'a>(attribute: &str, lines: &mut impl Iterator<Item = &'a str>) {
 /// How many names each library crate re-exports, by crate.
 fn public_names(root: &Path) -> Result<Vec<(String, usize)>, StepError> {
     let folder = root.join("crates");
-    let file = |source| StepError::File { path: folder.clone(), source };
+    let file = StepError::file(&folder);
     let mut counts = Vec::new();
-    for entry in fs::read_dir(&folder).map_err(file)? {
-        let entry = entry.map_err(file)?;
+    for entry in fs::read_dir(&folder).map_err(&file)? {
+        let entry = entry.map_err(&file)?;
         let library = entry.path().join("src/lib.rs");
         if library.is_file() {
             let name = entry.file_name().to_string_lossy().into_owned();

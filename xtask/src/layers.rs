@@ -1,6 +1,10 @@
 //! Which crate of this workspace may use which: the arrows go one way.
 
+use std::path::Path;
+
 use serde_json::Value;
+
+use crate::step::{StepError, metadata};
 
 /// Each crate of the workspace, and the crates of the workspace that it may depend on.
 ///
@@ -29,8 +33,12 @@ const ALLOWED: [(&str, &[&str]); 11] = [
     ("xtask", &[]),
 ];
 
+pub(crate) fn check(root: &Path) -> Result<(), StepError> {
+    StepError::none_of(violations(&metadata(root)?))
+}
+
 /// What in the output of `cargo metadata --no-deps` breaks the layers, one line each.
-pub(crate) fn violations(metadata: &Value) -> Vec<String> {
+fn violations(metadata: &Value) -> Vec<String> {
     let packages = array(&metadata["packages"]);
     let ours: Vec<&str> = packages.iter().filter_map(|p| p["name"].as_str()).collect();
     if ours.is_empty() {

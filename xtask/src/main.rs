@@ -1,10 +1,12 @@
-//! The project's own commands; run `cargo xtask` for the list.
+//! The project's own commands; run `cargo xtask help` for the list.
 //!
 //! `tables` turns `tables/*.csv` into committed Rust; `check` is the gate, the same on every
 //! machine and in `.ci/run`.
 
 use std::path::Path;
 use std::process::ExitCode;
+
+use step::StepError;
 
 mod bench;
 mod c_library;
@@ -17,25 +19,32 @@ mod outputs;
 mod python;
 mod python_wheel;
 mod readme;
+mod step;
 mod tables;
 
-const USAGE: &str = "\
-usage: cargo xtask tables          write crates/upglow-color/src/tables from tables/*.csv
-       cargo xtask check [--slow]  run every check; --slow adds the tests named slow_*
-       cargo xtask bench           run every bench and write docs/PERFORMANCE.md
-       cargo xtask header          write bindings/c/include/upglow.h from bindings/c/src
-       cargo xtask install-c DIR   install the C library, its header, and files for pkg-config
-                                   and CMake below DIR
-       cargo xtask test-c          run the checks of the C library
-       cargo xtask test-python     build the Python package's wheel and run its tests
-       cargo xtask test-mitsuba    build the plugins for Mitsuba 3 and run their tests
-       cargo xtask count [FOLDER]  count source lines, public names and the program's crates, here or
-                                   in another checkout
-       cargo xtask outputs PROGRAM FOLDER [--study PROGRAM] [--against OLDFOLDER]
-                                   make every product of an `upglow` executable in the new
-                                   FOLDER, at small sizes, and print the SHA-256 of each; --study draws the
-                                   figures with another executable; --against says which
-                                   products differ from those in OLDFOLDER";
+const HELP: &str = "\
+usage: cargo xtask COMMAND
+
+  check            run every step of the check, up to the first that fails
+      --list           print the steps
+      --only STEP      run this step; may be given several times
+      --from STEP      run this step and those after it
+      --keep-going     run the others after a failure too
+      --slow           add the tests named slow_*
+  test-c           run the steps about the C library
+  test-python      build the Python package's wheel and run its tests
+  test-mitsuba     build the plugins for Mitsuba 3 and run their tests
+  tables           write crates/upglow-color/src/tables from tables/*.csv
+  header           write bindings/c/include/upglow.h from bindings/c/src
+  bench            run every bench and write docs/PERFORMANCE.md
+  install-c DIR    install the C library, its header, and files for pkg-config and CMake below DIR
+  count [FOLDER]   count source lines, public names and the program's crates, here or in FOLDER
+  outputs PROGRAM FOLDER
+                   make every product of the executable PROGRAM, an `upglow` of any commit, in the
+                   new FOLDER, at small sizes, and print the SHA-256 of each
+      --study PROGRAM  draw the figures with this executable
+      --against OLD    say which products differ from those in the folder OLD; exit 1 if any does
+  help             print this";
 
 /// Exit status on bad usage; 1 is a check that failed.
 const BAD_USAGE: u8 = 2;
@@ -43,89 +52,95 @@ const BAD_USAGE: u8 = 2;
 fn main() -> ExitCode {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("xtask lies in the workspace");
     let args: Vec<String> = std::env::args().skip(1).collect();
-    match args.iter().map(String::as_str).collect::<Vec<_>>()[..] {
-        ["tables"] => tables(root),
-        ["bench"] => bench::run(root),
-        ["header"] => header(root),
-        ["install-c", prefix] => install_c(root, Path::new(prefix)),
-        ["test-c"] => check::run_steps(root, c_library::STEPS),
-        ["test-python"] => check::run_steps(root, python_wheel::STEPS),
-        ["test-mitsuba"] => check::run_steps(root, mitsuba::STEPS_WITH_PACKAGE),
-        ["count"] => count(root),
-        ["count", folder] => count(Path::new(folder)),
-        ["outputs", program, folder, ref options @ ..] => outputs(program, folder, options),
-        ["check"] => check::run(root, check::Tests::Quick),
-        ["check", "--slow"] => check::run(root, check::Tests::QuickAndSlow),
-        _ => {
-            eprintln!("{USAGE}");
-            ExitCode::from(BAD_USAGE)
+    match run(root, &args.iter().map(String::as_str).collect::<Vec<_>>()) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(error) => {
+            eprintln!("error: {error}");
+            match error {
+                StepError::Usage(_) => ExitCode::from(BAD_USAGE),
+                _ => ExitCode::FAILURE,
+            }
         }
     }
 }
 
-fn tables(root: &Path) -> ExitCode {
-    let files = match tables::generate(root) {
-        Ok(files) => files,
-        Err(error) => return fail(&error),
-    };
-    match tables::write(root, &files) {
-        Ok(changed) => {
-            println!("tables: {} files, {changed} changed", files.len());
-            ExitCode::SUCCESS
-        }
-        Err(error) => fail(&error),
-    }
-}
-
-fn header(root: &Path) -> ExitCode {
-    match c_library::write_header(root) {
-        Ok(changed) => {
-            println!("header: {}", if changed { "changed" } else { "unchanged" });
-            ExitCode::SUCCESS
-        }
-        Err(error) => fail(&error),
-    }
-}
-
-fn install_c(root: &Path, prefix: &Path) -> ExitCode {
-    match c_library::install(root, prefix) {
-        Ok(installed) => {
+/// Runs one command; whether all is well.
+fn run(root: &Path, args: &[&str]) -> Result<bool, StepError> {
+    match args {
+        ["check", options @ ..] => return check::run(root, options),
+        ["test-c"] => return Ok(check::run_steps(root, &c_library::STEPS, false)),
+        ["test-python"] => return Ok(check::run_steps(root, &python_wheel::STEPS, false)),
+        ["test-mitsuba"] => return Ok(check::run_steps(root, &mitsuba::STEPS_WITH_PACKAGE, false)),
+        ["outputs", program, folder, options @ ..] => return outputs(program, folder, options),
+        ["tables"] => tables::write(root)?,
+        ["bench"] => bench::run(root)?,
+        ["header"] => c_library::write_header(root)?,
+        ["install-c", prefix] => {
+            let installed = c_library::install(root, Path::new(prefix))?;
             println!("install-c: {}, {}", installed.include.display(), installed.lib.display());
-            ExitCode::SUCCESS
         }
-        Err(error) => fail(&error),
+        ["count"] => println!("{}", count::count(root)?),
+        ["count", folder] => println!("{}", count::count(Path::new(folder))?),
+        ["help" | "--help" | "-h"] => println!("{HELP}"),
+        [] => return Err(StepError::Usage(format!("no command, expected {}", commands()))),
+        [command, ..] => {
+            let problem = if commands().split(", ").any(|known| known == *command) {
+                format!("{command}: wrong arguments; `cargo xtask help` lists them")
+            } else {
+                format!("no command {command}, expected {}", commands())
+            };
+            return Err(StepError::Usage(problem));
+        }
     }
+    Ok(true)
 }
 
-fn count(folder: &Path) -> ExitCode {
-    match count::count(folder) {
-        Ok(count) => {
-            println!("{count}");
-            ExitCode::SUCCESS
-        }
-        Err(error) => fail(&error),
-    }
+/// The names of the commands, as the help lists them.
+fn commands() -> String {
+    let lines = HELP.lines().filter_map(|line| line.strip_prefix("  "));
+    let names = lines.filter(|line| !line.starts_with(' ')).filter_map(|l| l.split(' ').next());
+    names.collect::<Vec<_>>().join(", ")
 }
 
-fn outputs(program: &str, folder: &str, mut options: &[&str]) -> ExitCode {
+fn outputs(program: &str, folder: &str, mut options: &[&str]) -> Result<bool, StepError> {
     let (mut study, mut against) = (program, None);
-    while let [option, value, rest @ ..] = options {
-        match *option {
-            "--study" => study = value,
-            "--against" => against = Some(Path::new(value)),
-            _ => break,
+    while let [option, rest @ ..] = options {
+        match (*option, rest.first()) {
+            ("--study", Some(value)) => study = value,
+            ("--against", Some(value)) => against = Some(Path::new(*value)),
+            _ => {
+                let problem = format!("outputs: {option}, expected --study PROGRAM, --against OLD");
+                return Err(StepError::Usage(problem));
+            }
         }
-        options = rest;
+        options = &rest[1..];
     }
-    if !options.is_empty() {
-        eprintln!("{USAGE}");
-        return ExitCode::from(BAD_USAGE);
-    }
-    let [program, folder, study] = [program, folder, study].map(Path::new);
-    outputs::run(program, folder, study, against).unwrap_or_else(|error| fail(&error))
+    outputs::run(Path::new(program), Path::new(folder), Path::new(study), against)
 }
 
-fn fail(error: &dyn std::error::Error) -> ExitCode {
-    eprintln!("error: {error}");
-    ExitCode::FAILURE
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn error(args: &[&str]) -> String {
+        run(Path::new("."), args).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn an_unknown_command_names_the_choices() {
+        assert!(error(&["chekc"]).starts_with("no command chekc, expected check, test-c, "));
+        assert!(error(&[]).starts_with("no command, expected check, "));
+        assert_eq!(
+            error(&["tables", "x"]),
+            "tables: wrong arguments; `cargo xtask help` lists them"
+        );
+        let outputs = error(&["outputs", "a", "b", "--with"]);
+        assert_eq!(outputs, "outputs: --with, expected --study PROGRAM, --against OLD");
+    }
+
+    #[test]
+    fn help_is_a_success() {
+        assert!(run(Path::new("."), &["help"]).unwrap());
+    }
 }

@@ -3,9 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::check::{Outcome, Step, StepError, output_of, release_bin_dir, target_dir};
-use crate::python::{self, Python};
-use crate::{c_library, llvm, python_wheel};
+use crate::step::{Step, StepError, finish, output_of, release_bin_dir, target_dir};
+use crate::{c_library, llvm, python, python_wheel};
 
 /// Where their sources are, below the workspace's root.
 const FOLDER: &str = "bindings/mitsuba";
@@ -14,67 +13,63 @@ const FOLDER: &str = "bindings/mitsuba";
 const PLUGINS_VARIABLE: &str = "UPGLOW_MITSUBA_PLUGINS";
 
 /// What `cargo xtask check` does about them, after the Python package is installed.
-pub(crate) const STEPS: [(&str, Step); 3] = [
-    ("Mitsuba plugins", builds),
-    ("Mitsuba, scalar", run_scalar),
-    ("Mitsuba, traced by LLVM", run_traced),
+pub(crate) const STEPS: [Step; 3] = [
+    Step { name: "mitsuba-plugins", about: "the plugins for Mitsuba 3 build", run: build },
+    Step { name: "mitsuba-scalar", about: "their tests, scalar variants", run: test_scalar },
+    Step {
+        name: "mitsuba-traced",
+        about: "their tests, variants traced by LLVM",
+        run: test_traced,
+    },
 ];
 
 /// The same on their own.
-pub(crate) const STEPS_WITH_PACKAGE: [(&str, Step); 4] =
-    [("Python package for Mitsuba", python_wheel::installs), STEPS[0], STEPS[1], STEPS[2]];
-
-/// The tools to build with, or what is missing.
-fn prepared(root: &Path) -> Result<Python, StepError> {
-    if let Some(reason) = c_library::missing(&["cmake"]) {
-        return Ok(Python::Missing(reason));
-    }
-    let path = root.join("target/python");
-    python::prepare_with_mitsuba(root).map_err(|source| StepError::File { path, source })
-}
+pub(crate) const STEPS_WITH_PACKAGE: [Step; 4] = [
+    Step {
+        name: "python-install",
+        about: "the Python package is installed",
+        run: |root| python_wheel::installed(root).map(|_| ()),
+    },
+    STEPS[0],
+    STEPS[1],
+    STEPS[2],
+];
 
 /// Where `CMake` builds them.
 fn build_folder(root: &Path) -> Result<PathBuf, StepError> {
     Ok(target_dir(root)?.join("mitsuba"))
 }
 
-fn builds(root: &Path) -> Result<Outcome, StepError> {
-    let interpreter = match prepared(root)? {
-        Python::Ready(interpreter) => interpreter,
-        Python::Missing(reason) => return Ok(Outcome::Skipped(reason)),
-    };
+fn build(root: &Path) -> Result<(), StepError> {
+    c_library::need(&["cmake"])?;
+    let interpreter = python::prepare_with_mitsuba(root)?;
     let (prefix, build) = (c_library::prefix(root)?, build_folder(root)?);
     let mut configure = Command::new("cmake");
     configure.arg("-S").arg(root.join(FOLDER)).arg("-B").arg(&build);
     configure.arg(format!("-DCMAKE_PREFIX_PATH={}", prefix.display()));
     configure.arg(format!("-DPython3_EXECUTABLE={}", interpreter.display()));
     configure.arg("-DCMAKE_CXX_FLAGS=-Werror");
-    output_of(configure)?;
+    finish(configure)?;
     let mut compile = Command::new("cmake");
     compile.arg("--build").arg(&build).args(["--parallel", "2"]);
-    output_of(compile)?;
-    Ok(Outcome::Passed)
+    finish(compile)
 }
 
-fn run_scalar(root: &Path) -> Result<Outcome, StepError> {
+fn test_scalar(root: &Path) -> Result<(), StepError> {
     test(root, "not traced")
 }
 
-fn run_traced(root: &Path) -> Result<Outcome, StepError> {
-    match llvm::library() {
-        Some(_) => test(root, "traced"),
-        None => Ok(Outcome::Skipped("no libLLVM 16 or later")),
-    }
+fn test_traced(root: &Path) -> Result<(), StepError> {
+    llvm::library().ok_or(StepError::Skipped("no libLLVM 16 or later"))?;
+    test(root, "traced")
 }
 
 /// Runs the tests that carry a mark, or do not, and prints what pytest says of them.
-fn test(root: &Path, marked: &str) -> Result<Outcome, StepError> {
-    let interpreter = match prepared(root)? {
-        Python::Ready(interpreter) => interpreter,
-        Python::Missing(reason) => return Ok(Outcome::Skipped(reason)),
-    };
+fn test(root: &Path, marked: &str) -> Result<(), StepError> {
+    c_library::need(&["cmake"])?;
+    let interpreter = python::prepare_with_mitsuba(root)?;
     let mut tests = python_wheel::pytest(&root.join(FOLDER), &interpreter, &release_bin_dir(root)?);
     tests.args(["-m", marked, "tests"]).env(PLUGINS_VARIABLE, build_folder(root)?);
     println!("{}", python_wheel::summary(&output_of(tests)?));
-    Ok(Outcome::Passed)
+    Ok(())
 }

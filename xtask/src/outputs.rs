@@ -1,14 +1,14 @@
 //! `cargo xtask outputs`: every product of a program at a small size, to compare two programs with.
 
 use std::collections::BTreeMap;
-use std::fmt;
 use std::fmt::Write as _;
 use std::fs;
-use std::io;
-use std::path::{Path, PathBuf};
-use std::process::{Command, ExitCode, Stdio};
+use std::path::Path;
+use std::process::{Command, Stdio};
 
 use sha2::{Digest as _, Sha256};
+
+use crate::step::StepError;
 
 /// Below here lie the texts for people, which may differ.
 const TEXTS: &str = "texts";
@@ -38,43 +38,20 @@ const COLORS: [&str; 7] =
 
 const INTERPOLATIONS: [&str; 5] = ["blend", "none", "coefficients", "features", "hybrid"];
 
-/// Why the outputs were not made.
-#[derive(Debug)]
-pub(crate) enum OutputsError {
-    /// A program could not be started.
-    Start { command: String, source: io::Error },
-    /// A program failed; it may not know an option that every program must know.
-    Failed { command: String, printed: String },
-    /// A file could not be read or written.
-    File { path: PathBuf, source: io::Error },
-}
-
-impl fmt::Display for OutputsError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Start { command, source } => write!(f, "{command}: {source}"),
-            Self::Failed { command, printed } => write!(f, "{command}: {}", printed.trim_end()),
-            Self::File { path, source } => write!(f, "{}: {source}", path.display()),
-        }
-    }
-}
-
-impl std::error::Error for OutputsError {}
-
 /// Makes the outputs of `program` in `folder`, prints their sums, and compares them with those in
-/// `against`. Figures and the report on the paper come from `study`.
+/// `against`; whether no product differs. Figures and the report on the paper come from `study`.
 pub(crate) fn run(
     program: &Path,
     folder: &Path,
     study: &Path,
     against: Option<&Path>,
-) -> Result<ExitCode, OutputsError> {
+) -> Result<bool, StepError> {
     make(program, folder, study)?;
     let made = sums(folder)?;
     for (path, sum) in &made {
         println!("{sum}  {path}");
     }
-    let Some(against) = against else { return Ok(ExitCode::SUCCESS) };
+    let Some(against) = against else { return Ok(true) };
     let changes = changes(&sums(against)?, &made);
     for Change { path, what, .. } in &changes {
         eprintln!("{path}: {what}");
@@ -82,7 +59,7 @@ pub(crate) fn run(
     let products = changes.iter().filter(|change| change.is_product).count();
     let texts = changes.len() - products;
     eprintln!("outputs: {} files, {products} differ; {texts} texts differ", made.len());
-    Ok(if products == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    Ok(products == 0)
 }
 
 /// One file that is not the same in both folders.
@@ -109,19 +86,18 @@ fn changes(old: &BTreeMap<String, String>, new: &BTreeMap<String, String>) -> Ve
 }
 
 /// SHA-256 of each file below a folder, by path.
-fn sums(folder: &Path) -> Result<BTreeMap<String, String>, OutputsError> {
+fn sums(folder: &Path) -> Result<BTreeMap<String, String>, StepError> {
     let mut sums = BTreeMap::new();
     let mut folders = vec![folder.to_owned()];
     while let Some(current) = folders.pop() {
-        let file = |source| OutputsError::File { path: current.clone(), source };
-        for entry in fs::read_dir(&current).map_err(file)? {
-            let path = entry.map_err(file)?.path();
+        let file = StepError::file(&current);
+        for entry in fs::read_dir(&current).map_err(&file)? {
+            let path = entry.map_err(&file)?.path();
             if path.is_dir() {
                 folders.push(path);
                 continue;
             }
-            let bytes = fs::read(&path)
-                .map_err(|source| OutputsError::File { path: path.clone(), source })?;
+            let bytes = fs::read(&path).map_err(StepError::file(&path))?;
             let name = path.strip_prefix(folder).unwrap_or(&path).to_string_lossy().into_owned();
             let hex = Sha256::digest(bytes).iter().fold(String::new(), |mut hex, byte| {
                 let _ = write!(hex, "{byte:02x}");
@@ -139,11 +115,11 @@ struct Outputs<'a> {
     folder: &'a Path,
 }
 
-fn make(program: &Path, folder: &Path, study: &Path) -> Result<(), OutputsError> {
+fn make(program: &Path, folder: &Path, study: &Path) -> Result<(), StepError> {
     // Programs are run in another folder than the one their paths were typed in.
     let [program, study] =
         [program, study].map(|path| fs::canonicalize(path).unwrap_or(path.into()));
-    fs::create_dir(folder).map_err(|source| OutputsError::File { path: folder.into(), source })?;
+    fs::create_dir(folder).map_err(StepError::file(folder))?;
     let outputs = Outputs { program: &program, folder };
     outputs.write_inputs()?;
     outputs.build_cubes()?;
@@ -155,7 +131,7 @@ fn make(program: &Path, folder: &Path, study: &Path) -> Result<(), OutputsError>
 
 impl Outputs<'_> {
     /// An observer, a light and two dyes of our own.
-    fn write_inputs(&self) -> Result<(), OutputsError> {
+    fn write_inputs(&self) -> Result<(), StepError> {
         let rows = |columns: &dyn Fn(usize) -> String| -> String {
             (300..=830).step_by(5).map(|nm| format!("{nm},{}\n", columns(nm))).collect()
         };
@@ -177,7 +153,7 @@ impl Outputs<'_> {
     }
 
     /// Every model with every option of fluorescence, every method, and every meaning of RGB.
-    fn build_cubes(&self) -> Result<(), OutputsError> {
+    fn build_cubes(&self) -> Result<(), StepError> {
         for options in fluorescences().into_iter().chain(methods()).chain(contracts()) {
             let name = options.replace("--", "").replace([' ', '/', ','], "_");
             self.build(&format!("all/{name}"), 3, &options)?;
@@ -188,14 +164,14 @@ impl Outputs<'_> {
         Ok(())
     }
 
-    fn build(&self, name: &str, resolution: u32, options: &str) -> Result<(), OutputsError> {
+    fn build(&self, name: &str, resolution: u32, options: &str) -> Result<(), StepError> {
         let cube = format!("cubes/{name}.safetensors");
         self.make_room(&cube)?;
         let args = format!("build --resolution {resolution} --output {cube} {options}");
         self.json(&format!("build/{name}"), &args)
     }
 
-    fn show_cubes(&self) -> Result<(), OutputsError> {
+    fn show_cubes(&self) -> Result<(), StepError> {
         for (name, _) in SAMPLES {
             let cube = format!("cubes/{name}.safetensors");
             self.json_and_text(&format!("inspect/{name}"), &format!("inspect {cube}"))?;
@@ -219,7 +195,7 @@ impl Outputs<'_> {
         Ok(())
     }
 
-    fn export_cubes(&self) -> Result<(), OutputsError> {
+    fn export_cubes(&self) -> Result<(), StepError> {
         for (name, _) in SAMPLES {
             for format in ["csv", "wgsl", "glsl", "hlsl", "osl", "coeff"] {
                 let output = format!("exports/{name}-{format}/{name}.{format}");
@@ -233,7 +209,7 @@ impl Outputs<'_> {
         self.json_and_text("inspect/coeff", table)
     }
 
-    fn bake_pictures(&self) -> Result<(), OutputsError> {
+    fn bake_pictures(&self) -> Result<(), StepError> {
         self.json("examples", "examples --out examples")?;
         for cube in ["default", "photon", "dense", "analytic-photon", "reflectance"] {
             for (name, form) in [
@@ -282,11 +258,11 @@ impl Outputs<'_> {
     }
 
     /// Writes a folder named `name`, or one `file` in it.
-    fn bake(&self, name: &str, file: &str, args: &str) -> Result<(), OutputsError> {
+    fn bake(&self, name: &str, file: &str, args: &str) -> Result<(), StepError> {
         self.json(&format!("bake/{name}"), &format!("{args} --output baked/{name}{file}"))
     }
 
-    fn draw_study(&self) -> Result<(), OutputsError> {
+    fn draw_study(&self) -> Result<(), StepError> {
         self.json("figures", "figures --resolution 4 --out figures")?;
         let correct = "figures --resolution 4 --display correct --only 5 --out figures-correct";
         self.json("figures-correct", correct)?;
@@ -294,49 +270,49 @@ impl Outputs<'_> {
         self.json("reproduce", "reproduce --resolution 4 --output texts/reproduce.md")
     }
 
-    fn json_and_text(&self, name: &str, args: &str) -> Result<(), OutputsError> {
+    fn json_and_text(&self, name: &str, args: &str) -> Result<(), StepError> {
         self.json(name, args)?;
         let text = self.output(args)?;
         self.write(&format!("{TEXTS}/{name}.txt"), &text)
     }
 
     /// Runs the program and keeps its JSON document.
-    fn json(&self, name: &str, args: &str) -> Result<(), OutputsError> {
+    fn json(&self, name: &str, args: &str) -> Result<(), StepError> {
         let printed = self.output(&format!("{args} --json"))?;
         self.write(&format!("json/{name}.json"), &without_times(&printed))
     }
 
     /// What the program prints to standard output. Some cubes break a law between their nodes, and
     /// `verify` fails.
-    fn output(&self, args: &str) -> Result<String, OutputsError> {
+    fn output(&self, args: &str) -> Result<String, StepError> {
         let mut command = Command::new(self.program);
         command.args(args.split_whitespace()).arg("--quiet").current_dir(self.folder);
         let shown = || format!("{} {args}", self.program.display());
         let output = command
             .stdin(Stdio::null())
             .output()
-            .map_err(|source| OutputsError::Start { command: shown(), source })?;
+            .map_err(|source| StepError::Start { command: shown(), source })?;
         let [mut stdout, stderr] =
             [output.stdout, output.stderr].map(|text| String::from_utf8_lossy(&text).into_owned());
         if !output.status.success() {
             if !args.starts_with("verify") || output.status.code() == Some(BAD_USAGE) {
-                return Err(OutputsError::Failed { command: shown(), printed: stderr });
+                return Err(StepError::Failed { command: shown(), output: stderr });
             }
             stdout += "a law is broken\n";
         }
         Ok(stdout)
     }
 
-    fn write(&self, path: &str, text: &str) -> Result<(), OutputsError> {
+    fn write(&self, path: &str, text: &str) -> Result<(), StepError> {
         self.make_room(path)?;
         let path = self.folder.join(path);
-        fs::write(&path, text).map_err(|source| OutputsError::File { path, source })
+        fs::write(&path, text).map_err(StepError::file(&path))
     }
 
     /// Makes the folder of a file.
-    fn make_room(&self, file: &str) -> Result<(), OutputsError> {
+    fn make_room(&self, file: &str) -> Result<(), StepError> {
         let path = self.folder.join(file).parent().map(Path::to_owned).unwrap_or_default();
-        fs::create_dir_all(&path).map_err(|source| OutputsError::File { path, source })
+        fs::create_dir_all(&path).map_err(StepError::file(&path))
     }
 }
 

@@ -1,9 +1,10 @@
 //! The Python that tests run other people's readers with, in a folder of its own.
 
 use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+
+use crate::step::{StepError, read};
 
 /// Tests run this interpreter, and skip by name where there is none.
 pub(crate) const VARIABLE: &str = "UPGLOW_PYTHON";
@@ -18,66 +19,60 @@ const REQUIREMENTS: [&str; 3] = [
 /// The list of what the plugins for Mitsuba need, on top of the others: not every platform has it.
 const MITSUBA_REQUIREMENTS: &str = "bindings/mitsuba/requirements.txt";
 
-/// Whether tests have their Python.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Python {
-    /// The interpreter with every package.
-    Ready(PathBuf),
-    /// Why there is none.
-    Missing(&'static str),
-}
-
-/// Makes `target/python` hold every package that tests need. What is there already stays.
-pub(crate) fn prepare(root: &Path) -> io::Result<Python> {
+/// Makes `target/python` hold every package that tests need; the interpreter. What is there already
+/// stays.
+pub(crate) fn prepare(root: &Path) -> Result<PathBuf, StepError> {
     let folder = root.join("target").join("python");
     let interpreter = folder.join("bin").join("python");
-    let wanted = requirements(root)?;
     let installed = folder.join("installed.txt");
-    if interpreter.exists() && fs::read_to_string(&installed).is_ok_and(|found| found == wanted) {
-        return Ok(Python::Ready(interpreter));
+    let lists = REQUIREMENTS.map(|list| root.join(list));
+    if interpreter.exists() && holds(&installed, &lists)? {
+        return Ok(interpreter);
     }
     if !succeeds(Command::new("python3").args(["-m", "venv", "--clear"]).arg(&folder)) {
-        return Ok(Python::Missing("no python3 with venv"));
+        return Err(StepError::Skipped("no python3 with venv"));
     }
-    let lists = REQUIREMENTS.map(|list| root.join(list));
-    if !succeeds(&mut install(&interpreter, &lists)) {
-        return Ok(Python::Missing("pip could not install the readers"));
-    }
-    fs::write(installed, wanted)?;
-    Ok(Python::Ready(interpreter))
+    install(&interpreter, &lists, &installed, "pip could not install what tests need")?;
+    Ok(interpreter)
 }
 
 /// Makes `target/python` hold Mitsuba as well.
-pub(crate) fn prepare_with_mitsuba(root: &Path) -> io::Result<Python> {
-    let interpreter = match prepare(root)? {
-        Python::Ready(interpreter) => interpreter,
-        missing => return Ok(missing),
-    };
-    let list = root.join(MITSUBA_REQUIREMENTS);
-    let wanted = fs::read_to_string(&list)?;
+pub(crate) fn prepare_with_mitsuba(root: &Path) -> Result<PathBuf, StepError> {
+    let interpreter = prepare(root)?;
+    let lists = [root.join(MITSUBA_REQUIREMENTS)];
     let installed = root.join("target").join("python").join("installed-mitsuba.txt");
-    if fs::read_to_string(&installed).is_ok_and(|found| found == wanted) {
-        return Ok(Python::Ready(interpreter));
+    if !holds(&installed, &lists)? {
+        install(&interpreter, &lists, &installed, "pip could not install Mitsuba")?;
     }
-    if !succeeds(&mut install(&interpreter, &[list])) {
-        return Ok(Python::Missing("pip could not install Mitsuba"));
-    }
-    fs::write(installed, wanted)?;
-    Ok(Python::Ready(interpreter))
+    Ok(interpreter)
 }
 
-fn install(interpreter: &Path, lists: &[PathBuf]) -> Command {
+/// Whether these lists were installed, as they are now.
+fn holds(installed: &Path, lists: &[PathBuf]) -> Result<bool, StepError> {
+    let wanted = together(lists)?;
+    Ok(fs::read_to_string(installed).is_ok_and(|found| found == wanted))
+}
+
+/// All lists, one after the other.
+fn together(lists: &[PathBuf]) -> Result<String, StepError> {
+    lists.iter().map(|list| read(list)).collect()
+}
+
+fn install(
+    interpreter: &Path,
+    lists: &[PathBuf],
+    installed: &Path,
+    failure: &'static str,
+) -> Result<(), StepError> {
     let mut install = Command::new(interpreter);
     install.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"]);
     for list in lists {
         install.arg("--requirement").arg(list);
     }
-    install
-}
-
-/// All lists, one after the other.
-fn requirements(root: &Path) -> io::Result<String> {
-    REQUIREMENTS.iter().map(|list| fs::read_to_string(root.join(list))).collect()
+    if !succeeds(&mut install) {
+        return Err(StepError::Skipped(failure));
+    }
+    fs::write(installed, together(lists)?).map_err(StepError::file(installed))
 }
 
 fn succeeds(command: &mut Command) -> bool {
@@ -92,8 +87,8 @@ mod tests {
     #[test]
     fn every_list_is_there_and_pins_its_packages() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
-        let mitsuba = fs::read_to_string(root.join(MITSUBA_REQUIREMENTS)).unwrap();
-        let lists = requirements(root).unwrap() + &mitsuba;
+        let lists = REQUIREMENTS.into_iter().chain([MITSUBA_REQUIREMENTS]);
+        let lists = together(&lists.map(|list| root.join(list)).collect::<Vec<_>>()).unwrap();
         let packages = lists.lines().filter(|line| !line.is_empty() && !line.starts_with('#'));
         for package in packages {
             assert!(package.contains("=="), "{package}");

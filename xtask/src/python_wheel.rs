@@ -1,11 +1,11 @@
 //! The Python package `upglow`: its wheel is built as users build it, installed, and tested.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use crate::check::{Outcome, Step, StepError, output_of, release_bin_dir};
 use crate::llvm;
-use crate::python::{self, Python};
+use crate::python;
+use crate::step::{Step, StepError, finish, output_of, release_bin_dir};
 
 /// Where the package lies.
 const PACKAGE: &str = "bindings/python";
@@ -14,46 +14,37 @@ const PACKAGE: &str = "bindings/python";
 const PROGRAM_VARIABLE: &str = "UPGLOW_PROGRAM";
 
 /// What `cargo xtask check` does about the package.
-pub(crate) const STEPS: [(&str, Step); 1] = [("Python package", run)];
+pub(crate) const STEPS: [Step; 1] = [Step {
+    name: "python-package",
+    about: "the wheel builds, installs, and passes its tests",
+    run: check,
+}];
 
-fn run(root: &Path) -> Result<Outcome, StepError> {
-    with_python(root, |interpreter| {
-        println!("{}", test(root, interpreter)?);
-        Ok(Outcome::Passed)
-    })
+/// Runs the tests against a program built like the wheel, and prints what pytest says of them: why
+/// some were skipped, and how many passed.
+fn check(root: &Path) -> Result<(), StepError> {
+    let interpreter = installed(root)?;
+    let tests = pytest(&root.join(PACKAGE), &interpreter, &release_bin_dir(root)?);
+    println!("{}", summary(&output_of(tests)?));
+    Ok(())
 }
 
-/// Builds and installs the wheel, for what else needs it.
-pub(crate) fn installs(root: &Path) -> Result<Outcome, StepError> {
-    with_python(root, |interpreter| output_of(install(root, interpreter)).map(|_| Outcome::Passed))
-}
-
-/// Tests of Mitsuba skip themselves, by name, where it could not be installed.
-fn with_python(
-    root: &Path,
-    work: impl FnOnce(&Path) -> Result<Outcome, StepError>,
-) -> Result<Outcome, StepError> {
-    let file = |source| StepError::File { path: root.join("target/python"), source };
-    python::prepare_with_mitsuba(root).map_err(file)?;
-    match python::prepare(root).map_err(file)? {
-        Python::Ready(interpreter) => work(&interpreter),
-        Python::Missing(reason) => Ok(Outcome::Skipped(reason)),
+/// Builds the wheel into the environment of tests, which has all that `requirements-test.txt` lists.
+/// Nothing is fetched. Returns the environment's interpreter.
+pub(crate) fn installed(root: &Path) -> Result<PathBuf, StepError> {
+    let interpreter = python::prepare(root)?;
+    match python::prepare_with_mitsuba(root) {
+        // Tests of Mitsuba skip themselves, by name, where it could not be installed.
+        Ok(_) | Err(StepError::Skipped(_)) => {}
+        Err(error) => return Err(error),
     }
-}
-
-/// Builds the wheel into the environment of `interpreter`, which has all that
-/// `requirements-test.txt` lists, and runs its tests against a program built like it. Nothing is
-/// fetched. Returns what pytest says of them: why some were skipped, and how many passed.
-pub(crate) fn test(root: &Path, interpreter: &Path) -> Result<String, StepError> {
-    let programs = release_bin_dir(root)?;
-    output_of(install(root, interpreter))?;
-    let tests = pytest(&root.join(PACKAGE), interpreter, &programs);
-    output_of(tests).map(|told| summary(&told).to_owned())
+    finish(install(root, &interpreter))?;
+    Ok(interpreter)
 }
 
 /// pytest in a folder, with the program `upglow` and a libLLVM for the tests that want them.
 pub(crate) fn pytest(folder: &Path, interpreter: &Path, programs: &Path) -> Command {
-    let mut tests = python(folder, interpreter);
+    let mut tests = python_in(folder, interpreter);
     tests.args(["-m", "pytest", "-q", "-rs", "-p", "no:cacheprovider"]);
     let program = format!("upglow{}", std::env::consts::EXE_SUFFIX);
     tests.env(PROGRAM_VARIABLE, programs.join(program));
@@ -63,7 +54,7 @@ pub(crate) fn pytest(folder: &Path, interpreter: &Path, programs: &Path) -> Comm
 
 /// What users type, but offline and with the build tools that are there.
 fn install(root: &Path, interpreter: &Path) -> Command {
-    let mut command = python(&root.join(PACKAGE), interpreter);
+    let mut command = python_in(&root.join(PACKAGE), interpreter);
     command.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-index"]);
     command.args(["--no-deps", "--no-build-isolation", "--force-reinstall"]);
     command.arg(root.join(PACKAGE)).env("CARGO_NET_OFFLINE", "true");
@@ -71,7 +62,7 @@ fn install(root: &Path, interpreter: &Path) -> Command {
 }
 
 /// Python in a folder, with the commands of its environment. It leaves no files there.
-fn python(folder: &Path, interpreter: &Path) -> Command {
+fn python_in(folder: &Path, interpreter: &Path) -> Command {
     let mut paths: Vec<_> = interpreter.parent().map(Path::to_owned).into_iter().collect();
     let inherited = std::env::var_os("PATH").unwrap_or_default();
     paths.extend(std::env::split_paths(&inherited));
@@ -112,7 +103,7 @@ mod tests {
 
     #[test]
     fn the_commands_of_the_environment_come_first() {
-        let command = python(Path::new("."), Path::new("/environment/bin/python"));
+        let command = python_in(Path::new("."), Path::new("/environment/bin/python"));
         let path = command.get_envs().find(|(name, _)| *name == "PATH").unwrap().1.unwrap();
         assert!(path.to_string_lossy().starts_with("/environment/bin"), "{path:?}");
     }

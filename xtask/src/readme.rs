@@ -6,104 +6,58 @@
 //! number of lines, and `[..]` for any part of a line.
 
 use std::ffi::OsString;
-use std::fmt;
-use std::io;
-use std::path::Path;
+use std::fs;
+use std::path::{Path, PathBuf};
 use std::process::Command;
+
+use crate::step::{StepError, read, release_bin_dir};
 
 /// The line that marks the next block.
 const MARKER: &str = "<!-- checked -->";
 
 /// One command and what it must print.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Example {
+struct Example {
     /// Line of the command in the README, from 1.
-    pub(crate) line: usize,
+    line: usize,
     /// The script, for `sh`.
-    pub(crate) script: String,
+    script: String,
     /// The expected lines of standard output; empty: anything goes.
-    pub(crate) output: Vec<String>,
+    output: Vec<String>,
 }
 
-/// Why a README's examples cannot be read.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum MarkerError {
-    /// A marker is not followed by a `sh` or `console` block.
-    NoBlock {
-        /// Line of the marker, from 1.
-        line: usize,
-    },
-    /// A marked block does not end.
-    Unclosed {
-        /// Line where the block starts, from 1.
-        line: usize,
-    },
-    /// A `console` block does not start with a `$ ` line.
-    NoCommand {
-        /// Line where the block starts, from 1.
-        line: usize,
-    },
-}
-
-impl fmt::Display for MarkerError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NoBlock { line } => {
-                write!(
-                    f,
-                    "line {line}: '{MARKER}' marks nothing, expected a ```sh or ```console block"
-                )
-            }
-            Self::Unclosed { line } => write!(f, "line {line}: the block has no end, expected ```"),
-            Self::NoCommand { line } => {
-                write!(f, "line {line}: the block starts with output, expected a line '$ command'")
-            }
-        }
+/// Runs the examples in order in one new folder, so that one may use the files of another.
+pub(crate) fn check(root: &Path) -> Result<(), StepError> {
+    let examples = examples(&read(&root.join("README.md"))?)?;
+    if examples.is_empty() {
+        return Err(StepError::Skipped("no checked example in README.md"));
     }
+    let bin_dir = release_bin_dir(root)?;
+    let folder = TemporaryFolder::create()?;
+    examples.iter().try_for_each(|example| run(example, &folder.0, &bin_dir))
 }
 
-impl std::error::Error for MarkerError {}
-
-/// Why an example does not do what the README says.
+/// A new folder that is removed with its contents at the end.
 #[derive(Debug)]
-pub(crate) enum ExampleError {
-    /// The shell could not be started.
-    Shell(io::Error),
-    /// The command failed.
-    Failed {
-        /// What it printed to standard output and standard error.
-        printed: String,
-    },
-    /// The command printed something else.
-    Output {
-        /// What it printed to standard output.
-        printed: String,
-    },
-}
+struct TemporaryFolder(PathBuf);
 
-impl fmt::Display for ExampleError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Shell(source) => write!(f, "sh did not start: {source}"),
-            Self::Failed { printed } => write!(f, "the command failed and printed\n{printed}"),
-            Self::Output { printed } => {
-                write!(f, "the README shows other output, the command printed\n{printed}")
-            }
-        }
+impl TemporaryFolder {
+    fn create() -> Result<Self, StepError> {
+        let path = std::env::temp_dir().join(format!("upglow-readme-{}", std::process::id()));
+        fs::create_dir(&path).map_err(StepError::file(&path))?;
+        Ok(Self(path))
     }
 }
 
-impl std::error::Error for ExampleError {
-    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        match self {
-            Self::Shell(source) => Some(source),
-            Self::Failed { .. } | Self::Output { .. } => None,
-        }
+impl Drop for TemporaryFolder {
+    fn drop(&mut self) {
+        // What is left in the temporary folder is not worth failing a check that passed.
+        fs::remove_dir_all(&self.0).ok();
     }
 }
 
 /// The marked examples of a README, in order.
-pub(crate) fn examples(readme: &str) -> Result<Vec<Example>, MarkerError> {
+fn examples(readme: &str) -> Result<Vec<Example>, StepError> {
     let mut lines = readme.lines().enumerate().map(|(i, line)| (i + 1, line));
     let mut found = Vec::new();
     while let Some((line, text)) = lines.next() {
@@ -114,9 +68,14 @@ pub(crate) fn examples(readme: &str) -> Result<Vec<Example>, MarkerError> {
         let (start, language) = match fence {
             Some((start, "```sh")) => (start, "sh"),
             Some((start, "```console")) => (start, "console"),
-            _ => return Err(MarkerError::NoBlock { line }),
+            _ => {
+                let problem =
+                    format!("'{MARKER}' marks nothing, expected a ```sh or ```console block");
+                return Err(at(line, &problem));
+            }
         };
-        let block = block(&mut lines).ok_or(MarkerError::Unclosed { line: start })?;
+        let block =
+            block(&mut lines).ok_or_else(|| at(start, "the block has no end, expected ```"))?;
         if language == "sh" {
             found.push(Example { line: start + 1, script: block.join("\n"), output: Vec::new() });
         } else {
@@ -124,6 +83,11 @@ pub(crate) fn examples(readme: &str) -> Result<Vec<Example>, MarkerError> {
         }
     }
     Ok(found)
+}
+
+/// A problem at a line of the README.
+fn at(line: usize, problem: &str) -> StepError {
+    StepError::found(format!("README.md, line {line}: {problem}"))
 }
 
 /// The lines up to the closing fence, which is consumed.
@@ -139,7 +103,7 @@ fn block<'a>(lines: &mut impl Iterator<Item = (usize, &'a str)>) -> Option<Vec<&
 }
 
 /// The commands of a console block whose fence is on line `start`.
-fn console_examples(start: usize, block: &[&str]) -> Result<Vec<Example>, MarkerError> {
+fn console_examples(start: usize, block: &[&str]) -> Result<Vec<Example>, StepError> {
     let mut found: Vec<Example> = Vec::new();
     let mut continues = false;
     for (i, text) in block.iter().enumerate() {
@@ -149,7 +113,9 @@ fn console_examples(start: usize, block: &[&str]) -> Result<Vec<Example>, Marker
             continues = command.ends_with('\\');
             continue;
         }
-        let example = found.last_mut().ok_or(MarkerError::NoCommand { line: start })?;
+        let example = found.last_mut().ok_or_else(|| {
+            at(start, "the block starts with output, expected a line '$ command'")
+        })?;
         if continues {
             example.script.push('\n');
             example.script.push_str(text.strip_prefix("> ").unwrap_or(text));
@@ -162,25 +128,25 @@ fn console_examples(start: usize, block: &[&str]) -> Result<Vec<Example>, Marker
 }
 
 /// Runs one example in `folder` with the programs of `bin_dir` first on the path.
-pub(crate) fn run(example: &Example, folder: &Path, bin_dir: &Path) -> Result<(), ExampleError> {
-    let output = Command::new("sh")
-        .args(["-e", "-c", &example.script])
+fn run(example: &Example, folder: &Path, bin_dir: &Path) -> Result<(), StepError> {
+    let Example { line, script, output } = example;
+    let ran = Command::new("sh")
+        .args(["-e", "-c", script])
         .current_dir(folder)
         .env("PATH", path_with(bin_dir))
         .output()
-        .map_err(ExampleError::Shell)?;
-    let stdout = String::from_utf8_lossy(&output.stdout).into_owned();
-    if !output.status.success() {
-        let printed = stdout + &String::from_utf8_lossy(&output.stderr);
-        return Err(ExampleError::Failed { printed });
-    }
-    let printed: Vec<&str> = stdout.lines().collect();
-    let expected: Vec<&str> = example.output.iter().map(String::as_str).collect();
-    if expected.is_empty() || lines_match(&expected, &printed) {
-        Ok(())
+        .map_err(|source| StepError::Start { command: "sh".into(), source })?;
+    let printed = String::from_utf8_lossy(&ran.stdout);
+    let expected: Vec<&str> = output.iter().map(String::as_str).collect();
+    let problem = if !ran.status.success() {
+        "failed and printed"
+    } else if expected.is_empty() || lines_match(&expected, &printed.lines().collect::<Vec<_>>()) {
+        return Ok(());
     } else {
-        Err(ExampleError::Output { printed: stdout })
-    }
+        "printed something else than the README shows"
+    };
+    let messages = String::from_utf8_lossy(&ran.stderr);
+    Err(at(*line, &format!("the command\n$ {script}\n{problem}\n{printed}{messages}")))
 }
 
 /// The path variable with `first` before all else.
@@ -225,12 +191,12 @@ mod tests {
     fn only_marked_blocks_are_examples() {
         let readme = "```sh\nrm x\n```\n\n<!-- checked -->\n\n```sh\ntrue\nfalse\n```\n";
         let expected = Example { line: 8, script: "true\nfalse".to_owned(), output: Vec::new() };
-        assert_eq!(examples(readme), Ok(vec![expected]));
+        assert_eq!(examples(readme).unwrap(), [expected]);
     }
 
     #[test]
     fn a_readme_without_markers_has_no_examples() {
-        assert_eq!(examples("# upglow\n"), Ok(Vec::new()));
+        assert_eq!(examples("# upglow\n").unwrap(), []);
     }
 
     #[test]
@@ -243,19 +209,23 @@ mod tests {
         assert_eq!((found[1].line, found[1].script.as_str()), (6, "true"));
     }
 
+    fn error_of(readme: &str) -> String {
+        examples(readme).unwrap_err().to_string()
+    }
+
     #[test]
     fn a_marker_that_marks_nothing_is_an_error() {
-        let error = MarkerError::NoBlock { line: 1 };
-        assert_eq!(examples("<!-- checked -->\ntext\n"), Err(error));
-        assert_eq!(examples("<!-- checked -->\n```text\n```\n"), Err(error));
+        let error = "README.md, line 1: '<!-- checked -->' marks nothing";
+        assert!(error_of("<!-- checked -->\ntext\n").starts_with(error));
+        assert!(error_of("<!-- checked -->\n```text\n```\n").starts_with(error));
     }
 
     #[test]
     fn a_block_without_end_or_command_is_an_error() {
-        let unclosed = examples("<!-- checked -->\n```sh\ntrue\n");
-        assert_eq!(unclosed, Err(MarkerError::Unclosed { line: 2 }));
-        let no_command = examples("<!-- checked -->\n```console\nout\n```\n");
-        assert_eq!(no_command, Err(MarkerError::NoCommand { line: 2 }));
+        let unclosed = error_of("<!-- checked -->\n```sh\ntrue\n");
+        assert!(unclosed.starts_with("README.md, line 2: the block has no end"), "{unclosed}");
+        let no_command = error_of("<!-- checked -->\n```console\nout\n```\n");
+        assert!(no_command.starts_with("README.md, line 2: the block starts with output"));
     }
 
     #[test]
@@ -277,9 +247,18 @@ mod tests {
         };
         let here = Path::new(".");
         assert!(run(&example("echo yes", &["yes"]), here, here).is_ok());
-        let other = run(&example("echo no", &["yes"]), here, here);
-        assert!(matches!(other, Err(ExampleError::Output { .. })));
-        let failed = run(&example("false; true", &[]), here, here);
-        assert!(matches!(failed, Err(ExampleError::Failed { .. })));
+        let other = run(&example("echo no", &["yes"]), here, here).unwrap_err().to_string();
+        assert!(other.contains("something else than the README shows\nno\n"), "{other}");
+        let failed = run(&example("false; true", &[]), here, here).unwrap_err().to_string();
+        assert!(failed.contains("$ false; true\nfailed"), "{failed}");
+    }
+
+    #[test]
+    fn the_temporary_folder_goes_away() {
+        let folder = TemporaryFolder::create().unwrap();
+        let path = folder.0.clone();
+        assert!(path.is_dir());
+        drop(folder);
+        assert!(!path.exists());
     }
 }

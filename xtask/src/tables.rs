@@ -6,6 +6,8 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use crate::step::StepError;
+
 /// Where the generated modules live, under the workspace root.
 const OUT_DIR: &str = "crates/upglow-color/src/tables";
 
@@ -14,82 +16,15 @@ const NUMBERS_PER_LINE: usize = 10;
 
 /// One generated file: its path under the workspace root, and its text.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Generated {
+struct Generated {
     /// Path under the workspace root.
-    pub(crate) path: PathBuf,
+    path: PathBuf,
     /// The whole text.
-    pub(crate) text: String,
-}
-
-/// Why the tables are not what the generator expects.
-#[derive(Debug)]
-pub(crate) enum TableError {
-    /// The file is not readable, or not CSV.
-    Csv {
-        /// Which table.
-        table: &'static str,
-        /// What the reader said.
-        source: csv::Error,
-    },
-    /// The columns are not the expected ones.
-    Columns {
-        /// Which table.
-        table: &'static str,
-        /// The columns found.
-        found: String,
-        /// The columns expected.
-        expected: String,
-    },
-    /// A table has another number of rows than its grid has samples.
-    Rows {
-        /// Which table.
-        table: &'static str,
-        /// The number of rows found.
-        found: usize,
-        /// The number of rows expected.
-        expected: usize,
-    },
-    /// A cell does not hold what its column holds.
-    Cell {
-        /// Which table.
-        table: &'static str,
-        /// Line in the file, from 1.
-        line: u64,
-        /// The cell's text.
-        found: String,
-        /// What the column holds.
-        expected: String,
-    },
-}
-
-impl fmt::Display for TableError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Csv { table, source } => write!(f, "tables/{table}.csv: {source}"),
-            Self::Columns { table, found, expected } => {
-                write!(f, "tables/{table}.csv: columns are {found}, expected {expected}")
-            }
-            Self::Rows { table, found, expected } => {
-                write!(f, "tables/{table}.csv: {found} rows, expected {expected}")
-            }
-            Self::Cell { table, line, found, expected } => {
-                write!(f, "tables/{table}.csv, line {line}: found '{found}', expected {expected}")
-            }
-        }
-    }
-}
-
-impl std::error::Error for TableError {
-    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        match self {
-            Self::Csv { source, .. } => Some(source),
-            Self::Columns { .. } | Self::Rows { .. } | Self::Cell { .. } => None,
-        }
-    }
+    text: String,
 }
 
 /// Every generated file, as the CSV files under `root` ask for it now.
-pub(crate) fn generate(root: &Path) -> Result<Vec<Generated>, TableError> {
+fn generate(root: &Path) -> Result<Vec<Generated>, StepError> {
     let read = |name| Table::read(&root.join("tables"), name);
     let dyes = Dyes::from_tables(&read("dyes")?, &read("dye_provenance")?)?;
     let sets = dye_sets(&read("dye_sets")?, &dyes)?;
@@ -102,18 +37,30 @@ pub(crate) fn generate(root: &Path) -> Result<Vec<Generated>, TableError> {
     ])
 }
 
-/// Writes every generated file under `root`; returns how many changed.
-pub(crate) fn write(root: &Path, files: &[Generated]) -> io::Result<usize> {
-    fs::create_dir_all(root.join(OUT_DIR))?;
+/// Writes every generated file under `root`, and says how many changed.
+pub(crate) fn write(root: &Path) -> Result<(), StepError> {
+    let files = generate(root)?;
     let stale: Vec<&Generated> = files.iter().filter(|file| !is_fresh(root, file)).collect();
     for file in &stale {
-        fs::write(root.join(&file.path), &file.text)?;
+        let path = root.join(&file.path);
+        fs::write(&path, &file.text).map_err(StepError::file(&path))?;
     }
-    Ok(stale.len())
+    println!("tables: {} files, {} changed", files.len(), stale.len());
+    Ok(())
+}
+
+/// The committed files are those that the CSV files ask for.
+pub(crate) fn check(root: &Path) -> Result<(), StepError> {
+    let files = generate(root)?;
+    let stale = files.iter().filter(|file| !is_fresh(root, file));
+    let problem = |file: &Generated| {
+        format!("{} is not what `cargo xtask tables` writes", file.path.display())
+    };
+    StepError::none_of(stale.map(problem).collect())
 }
 
 /// Whether the committed file holds exactly the generated text.
-pub(crate) fn is_fresh(root: &Path, file: &Generated) -> bool {
+fn is_fresh(root: &Path, file: &Generated) -> bool {
     fs::read(root.join(&file.path)).is_ok_and(|found| found == file.text.as_bytes())
 }
 
@@ -160,15 +107,13 @@ struct Row {
 }
 
 impl Table {
-    fn read(folder: &Path, name: &'static str) -> Result<Self, TableError> {
+    fn read(folder: &Path, name: &'static str) -> Result<Self, StepError> {
         let path = folder.join(name).with_extension("csv");
-        let file = fs::File::open(path)
-            .map_err(|source| TableError::Csv { table: name, source: source.into() })?;
-        Self::parse(name, file)
+        Self::parse(name, fs::File::open(&path).map_err(StepError::file(&path))?)
     }
 
-    fn parse(name: &'static str, text: impl io::Read) -> Result<Self, TableError> {
-        let csv_error = |source| TableError::Csv { table: name, source };
+    fn parse(name: &'static str, text: impl io::Read) -> Result<Self, StepError> {
+        let csv_error = |error| StepError::found(format!("tables/{name}.csv: {error}"));
         let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_reader(text);
         let columns = reader.headers().map_err(csv_error)?.iter().map(str::to_owned).collect();
         let mut rows = Vec::new();
@@ -180,44 +125,41 @@ impl Table {
         Ok(Self { name, columns, rows })
     }
 
-    fn expect_columns(&self, expected: &[&str]) -> Result<(), TableError> {
+    fn expect_columns(&self, expected: &[&str]) -> Result<(), StepError> {
         if self.columns == expected {
             return Ok(());
         }
-        Err(TableError::Columns {
-            table: self.name,
-            found: self.columns.join(","),
-            expected: expected.join(","),
-        })
+        let (found, expected) = (self.columns.join(","), expected.join(","));
+        Err(self.error(&format!(": columns are {found}, expected {expected}")))
     }
 
-    fn cell_error(&self, row: &Row, column: usize, expected: impl Into<String>) -> TableError {
-        TableError::Cell {
-            table: self.name,
-            line: row.line,
-            found: row.cells[column].clone(),
-            expected: expected.into(),
-        }
+    fn error(&self, problem: &str) -> StepError {
+        StepError::found(format!("tables/{}.csv{problem}", self.name))
+    }
+
+    fn cell_error(&self, row: &Row, column: usize, expected: &str) -> StepError {
+        let (line, found) = (row.line, &row.cells[column]);
+        self.error(&format!(", line {line}: found '{found}', expected {expected}"))
     }
 
     /// Checks that the first column is exactly the wavelengths of `spacing`.
-    fn expect_wavelengths(&self, spacing: Spacing) -> Result<(), TableError> {
+    fn expect_wavelengths(&self, spacing: Spacing) -> Result<(), StepError> {
         if self.rows.len() != spacing.len {
             let (found, expected) = (self.rows.len(), spacing.len);
-            return Err(TableError::Rows { table: self.name, found, expected });
+            return Err(self.error(&format!(": {found} rows, expected {expected}")));
         }
         for (row, nm) in
             self.rows.iter().zip((spacing.first_nm..).step_by(spacing.step_nm as usize))
         {
             if row.cells[0] != nm.to_string() {
-                return Err(self.cell_error(row, 0, format!("{nm} nm")));
+                return Err(self.cell_error(row, 0, &format!("{nm} nm")));
             }
         }
         Ok(())
     }
 
     /// A finite number; with `empty`, what an empty cell counts as.
-    fn number(&self, row: &Row, column: usize, empty: Option<f64>) -> Result<f64, TableError> {
+    fn number(&self, row: &Row, column: usize, empty: Option<f64>) -> Result<f64, StepError> {
         match (row.cells[column].as_str(), empty) {
             ("", Some(value)) => Ok(value),
             (cell, _) => cell
@@ -229,7 +171,7 @@ impl Table {
     }
 
     /// Columns 1, 2 and 3 of every row.
-    fn triples(&self) -> Result<Vec<[f64; 3]>, TableError> {
+    fn triples(&self) -> Result<Vec<[f64; 3]>, StepError> {
         let triple = |row| {
             Ok([self.number(row, 1, None)?, self.number(row, 2, None)?, self.number(row, 3, None)?])
         };
@@ -254,7 +196,7 @@ struct Dye {
 struct Dyes(Vec<Dye>);
 
 impl Dyes {
-    fn from_tables(spectra: &Table, provenance: &Table) -> Result<Self, TableError> {
+    fn from_tables(spectra: &Table, provenance: &Table) -> Result<Self, StepError> {
         provenance.expect_columns(&[
             "name",
             "measured_by",
@@ -290,7 +232,7 @@ impl Dyes {
 }
 
 /// The last column of the provenance table; empty is "not published".
-fn quantum_yield(table: &Table, row: &Row) -> Result<Option<f64>, TableError> {
+fn quantum_yield(table: &Table, row: &Row) -> Result<Option<f64>, StepError> {
     let column = table.columns.len() - 1;
     if row.cells[column].is_empty() {
         return Ok(None);
@@ -303,7 +245,7 @@ fn quantum_yield(table: &Table, row: &Row) -> Result<Option<f64>, TableError> {
 }
 
 /// One column of numbers in 0..1, where an empty cell is 0.
-fn relative_spectrum(table: &Table, column: usize) -> Result<Vec<f64>, TableError> {
+fn relative_spectrum(table: &Table, column: usize) -> Result<Vec<f64>, StepError> {
     let sample = |row| {
         let value = table.number(row, column, Some(0.0))?;
         if (0.0..=1.0).contains(&value) {
@@ -316,7 +258,7 @@ fn relative_spectrum(table: &Table, column: usize) -> Result<Vec<f64>, TableErro
 }
 
 /// The dye sets in file order: name and ring.
-fn dye_sets(table: &Table, dyes: &Dyes) -> Result<Vec<(String, Vec<String>)>, TableError> {
+fn dye_sets(table: &Table, dyes: &Dyes) -> Result<Vec<(String, Vec<String>)>, StepError> {
     table.expect_columns(&["set", "position", "dye"])?;
     let mut sets: Vec<(String, Vec<String>)> = Vec::new();
     let mut index_of: BTreeMap<String, usize> = BTreeMap::new();
@@ -327,7 +269,7 @@ fn dye_sets(table: &Table, dyes: &Dyes) -> Result<Vec<(String, Vec<String>)>, Ta
         });
         let ring = &mut sets[index].1;
         if row.cells[1] != ring.len().to_string() {
-            return Err(table.cell_error(row, 1, format!("position {}", ring.len())));
+            return Err(table.cell_error(row, 1, &format!("position {}", ring.len())));
         }
         if !dyes.contains(&row.cells[2]) {
             return Err(table.cell_error(row, 2, "a dye of tables/dyes.csv"));
@@ -342,7 +284,7 @@ fn head(sources: &str) -> String {
     format!("// Generated from {sources} by `cargo xtask tables`; do not edit.\n\n")
 }
 
-fn observer_rs(table: &Table) -> Result<String, TableError> {
+fn observer_rs(table: &Table) -> Result<String, StepError> {
     table.expect_columns(&["wavelength_nm", "x_bar", "y_bar", "z_bar"])?;
     table.expect_wavelengths(OBSERVER)?;
     let mut out = head("tables/cie_1931_2deg.csv");
@@ -355,7 +297,7 @@ fn observer_rs(table: &Table) -> Result<String, TableError> {
     Ok(out)
 }
 
-fn daylight_rs(table: &Table) -> Result<String, TableError> {
+fn daylight_rs(table: &Table) -> Result<String, StepError> {
     table.expect_columns(&["wavelength_nm", "s0", "s1", "s2"])?;
     table.expect_wavelengths(DAYLIGHT)?;
     let mut out = head("tables/daylight_components.csv");

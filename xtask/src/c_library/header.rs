@@ -4,41 +4,38 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::FOLDER;
-use crate::check::{Outcome, StepError};
+use crate::step::{StepError, read};
 
 fn path(root: &Path) -> PathBuf {
     root.join(FOLDER).join("include").join("upglow.h")
 }
 
-/// Writes the header; whether it changed.
-pub(crate) fn write(root: &Path) -> Result<bool, StepError> {
+/// Writes the header, and says whether it changed.
+pub(crate) fn write(root: &Path) -> Result<(), StepError> {
     let (path, text) = (path(root), generate(root)?);
-    if fs::read_to_string(&path).is_ok_and(|found| found == text) {
-        return Ok(false);
+    let is_fresh = fs::read_to_string(&path).is_ok_and(|found| found == text);
+    if !is_fresh {
+        fs::write(&path, text).map_err(StepError::file(&path))?;
     }
-    fs::write(&path, text).map_err(|source| StepError::File { path, source })?;
-    Ok(true)
+    println!("header: {}", if is_fresh { "unchanged" } else { "changed" });
+    Ok(())
 }
 
 /// The committed header is the one that the sources make.
-pub(super) fn check(root: &Path) -> Result<Outcome, StepError> {
-    let (path, text) = (path(root), generate(root)?);
-    match fs::read_to_string(&path) {
-        Ok(found) if found == text => Ok(Outcome::Passed),
-        Ok(_) => {
-            let problem = format!("{} is not what `cargo xtask header` writes", path.display());
-            Err(StepError::Found(vec![problem]))
-        }
-        Err(source) => Err(StepError::File { path, source }),
+pub(super) fn check(root: &Path) -> Result<(), StepError> {
+    let path = path(root);
+    if read(&path)? == generate(root)? {
+        return Ok(());
     }
+    Err(StepError::found(format!("{} is not what `cargo xtask header` writes", path.display())))
 }
 
 fn generate(root: &Path) -> Result<String, StepError> {
     let folder = root.join(FOLDER);
     let config = cbindgen::Config::from_file(folder.join("cbindgen.toml"));
-    let config = config.map_err(|error| StepError::Found(vec![error]))?;
+    let config = config.map_err(StepError::found)?;
     let bindings = cbindgen::Builder::new().with_crate(&folder).with_config(config).generate();
-    let bindings = bindings.map_err(|error| StepError::Found(vec![error.to_string()]))?;
+    let bindings = bindings.map_err(|error| StepError::found(error.to_string()))?;
     let mut bytes = Vec::new();
     bindings.write(&mut bytes);
     Ok(for_c(&String::from_utf8_lossy(&bytes)))

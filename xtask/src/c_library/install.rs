@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use super::FOLDER;
-use crate::check::{StepError, cargo, output_and_messages_of, target_dir};
+use crate::step::{StepError, cargo, finish, output_and_messages_of, read, target_dir};
 
 /// All crates of the workspace have this version.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -64,13 +64,12 @@ fn series() -> &'static str {
 pub(crate) fn install(root: &Path, prefix: &Path) -> Result<Installed, StepError> {
     let names = SharedNames::of_this_system().ok_or_else(|| {
         let os = std::env::consts::OS;
-        StepError::Found(vec![format!("system {os}, expected linux or macos")])
+        StepError::found(format!("system {os}, expected linux or macos"))
     })?;
     let built = target_dir(root)?.join("release");
     let native_libraries = build_static(root)?;
     build_shared(root, &names)?;
-    let prefix = std::path::absolute(prefix)
-        .map_err(|source| StepError::File { path: prefix.into(), source })?;
+    let prefix = std::path::absolute(prefix).map_err(StepError::file(prefix))?;
     let installed =
         Installed { include: prefix.join("include"), lib: prefix.join("lib"), native_libraries };
     let source = root.join(FOLDER);
@@ -104,8 +103,7 @@ fn build_static(root: &Path) -> Result<Vec<String>, StepError> {
     command.args(["--print", "native-static-libs"]);
     let (_, messages) = output_and_messages_of(command)?;
     native_libraries(&messages).ok_or_else(|| {
-        let problem = format!("no line `native-static-libs` in what rustc says:\n{messages}");
-        StepError::Found(vec![problem])
+        StepError::found(format!("no line `native-static-libs` in what rustc says:\n{messages}"))
     })
 }
 
@@ -117,7 +115,7 @@ fn native_libraries(messages: &str) -> Option<Vec<String>> {
 fn build_shared(root: &Path, names: &SharedNames) -> Result<(), StepError> {
     let mut command = build(root, "cdylib");
     command.arg("-C").arg(format!("link-arg={}", names.argument));
-    output_and_messages_of(command).map(|_| ())
+    finish(command)
 }
 
 fn build(root: &Path, crate_type: &str) -> Command {
@@ -135,10 +133,6 @@ fn filled(template: &str, names: &SharedNames, native_libraries: &[String]) -> S
         .replace("@SONAME@", &names.soname)
         .replace("@NATIVE_LIBRARIES@", &native_libraries.join(" "))
         .replace("@NATIVE_LIBRARY_LIST@", &list.join(";"))
-}
-
-fn read(path: &Path) -> Result<String, StepError> {
-    fs::read_to_string(path).map_err(|source| StepError::File { path: path.into(), source })
 }
 
 fn place(from: &Path, to: &Path) -> Result<(), StepError> {

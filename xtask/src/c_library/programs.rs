@@ -9,7 +9,7 @@ use std::process::Command;
 use super::agreement::differences;
 use super::install::{Installed, install};
 use super::{FOLDER, scratch};
-use crate::check::{Outcome, StepError, output_of, release_bin_dir};
+use crate::step::{StepError, finish, json_of, output_of, read, release_bin_dir};
 
 /// A gray, and two colors that need fluorescence.
 const COLORS: [[&str; 3]; 3] =
@@ -77,21 +77,22 @@ impl Language {
     }
 }
 
-/// What is missing of the compilers and these tools.
-pub(crate) fn missing(tools: &[&'static str]) -> Option<&'static str> {
-    if Language::C.compiler().is_none() {
-        return Some("no C compiler, neither $CC nor cc");
-    }
-    if Language::Cxx.compiler().is_none() {
-        return Some("no C++ compiler, neither $CXX nor c++");
-    }
-    let absent = tools.iter().find(|tool| !is_there(&OsString::from(tool)))?;
-    Some(match *absent {
-        "valgrind" => "valgrind not installed",
-        "pkg-config" => "pkg-config not installed",
-        "cmake" => "cmake not installed",
-        _ => "a tool is not installed",
-    })
+/// Skips a step without the compilers or one of these tools.
+pub(crate) fn need(tools: &[&str]) -> Result<(), StepError> {
+    let reason = if Language::C.compiler().is_none() {
+        "no C compiler, neither $CC nor cc"
+    } else if Language::Cxx.compiler().is_none() {
+        "no C++ compiler, neither $CXX nor c++"
+    } else {
+        match tools.iter().find(|tool| !is_there(&OsString::from(tool))) {
+            None => return Ok(()),
+            Some(&"valgrind") => "valgrind not installed",
+            Some(&"pkg-config") => "pkg-config not installed",
+            Some(&"cmake") => "cmake not installed",
+            Some(_) => "a tool is not installed",
+        }
+    };
+    Err(StepError::Skipped(reason))
 }
 
 fn is_there(tool: &OsString) -> bool {
@@ -99,28 +100,20 @@ fn is_there(tool: &OsString) -> bool {
 }
 
 /// Static and shared, each as a user would link it.
-pub(super) fn run(root: &Path) -> Result<Outcome, StepError> {
-    match missing(&[]) {
-        Some(reason) => Ok(Outcome::Skipped(reason)),
-        None => {
-            let bench = Bench::new(root)?;
-            bench.run_readme()?;
-            bench.run_all(&[])
-        }
-    }
+pub(super) fn run(root: &Path) -> Result<(), StepError> {
+    need(&[])?;
+    let bench = Bench::new(root)?;
+    bench.run_readme()?;
+    bench.run_all(&[])
 }
 
-pub(super) fn run_under_valgrind(root: &Path) -> Result<Outcome, StepError> {
-    match missing(&["valgrind"]) {
-        Some(reason) => Ok(Outcome::Skipped(reason)),
-        None => Bench::new(root)?.run_all(&[&["valgrind"], &VALGRIND[..]].concat()),
-    }
+pub(super) fn run_valgrind(root: &Path) -> Result<(), StepError> {
+    need(&["valgrind"])?;
+    Bench::new(root)?.run_all(&[&["valgrind"], &VALGRIND[..]].concat())
 }
 
-pub(super) fn run_by_pkg_config(root: &Path) -> Result<Outcome, StepError> {
-    if let Some(reason) = missing(&["pkg-config"]) {
-        return Ok(Outcome::Skipped(reason));
-    }
+pub(super) fn run_pkg_config(root: &Path) -> Result<(), StepError> {
+    need(&["pkg-config"])?;
     let bench = Bench::new(root)?;
     for package in ["upglow", "upglow-static"] {
         let mut query = Command::new("pkg-config");
@@ -130,31 +123,29 @@ pub(super) fn run_by_pkg_config(root: &Path) -> Result<Outcome, StepError> {
         let executable = bench.folder.join(format!("render-{package}"));
         let mut compile = bench.compiler(RENDER, &executable);
         compile.args(flags.split_whitespace()).arg(bench.run_path());
-        output_of(compile)?;
+        finish(compile)?;
         bench.run_with_colors(RENDER, &executable, &[])?;
     }
-    Ok(Outcome::Passed)
+    Ok(())
 }
 
-pub(super) fn run_by_cmake(root: &Path) -> Result<Outcome, StepError> {
-    if let Some(reason) = missing(&["cmake"]) {
-        return Ok(Outcome::Skipped(reason));
-    }
+pub(super) fn run_cmake(root: &Path) -> Result<(), StepError> {
+    need(&["cmake"])?;
     let bench = Bench::new(root)?;
     let build = bench.folder.join("cmake");
     let prefix = bench.folder.join("prefix");
     let mut configure = Command::new("cmake");
     configure.arg("-S").arg(bench.sources.join("examples")).arg("-B").arg(&build);
     configure.arg(format!("-DCMAKE_PREFIX_PATH={}", prefix.display()));
-    output_of(configure)?;
+    finish(configure)?;
     let mut compile = Command::new("cmake");
     compile.arg("--build").arg(&build);
-    output_of(compile)?;
+    finish(compile)?;
     for linking in ["static", "shared"] {
         bench.run_with_colors(RENDER, &build.join(format!("render_{linking}")), &[])?;
         bench.run_with_colors(SAMPLING, &build.join(format!("sampling_{linking}")), &[])?;
     }
-    Ok(Outcome::Passed)
+    Ok(())
 }
 
 /// The compiler with all but what the library needs.
@@ -185,36 +176,35 @@ impl Bench {
     fn new(root: &Path) -> Result<Self, StepError> {
         let folder = scratch(root)?;
         let installed = install(root, &folder.join("prefix"))?;
-        fs::create_dir_all(&folder)
-            .map_err(|source| StepError::File { path: folder.clone(), source })?;
+        fs::create_dir_all(&folder).map_err(StepError::file(&folder))?;
         let upglow = release_bin_dir(root)?.join("upglow");
         let cube = folder.join("cube.safetensors");
         let mut build = Command::new(&upglow);
         build.args(["build", "--quiet", "--resolution", RESOLUTION, "--output"]).arg(&cube);
-        output_of(build)?;
+        finish(build)?;
         Ok(Self { sources: root.join(FOLDER), folder, installed, upglow, cube })
     }
 
     /// Runs every program, each after the words of `before`.
-    fn run_all(&self, before: &[&str]) -> Result<Outcome, StepError> {
+    fn run_all(&self, before: &[&str]) -> Result<(), StepError> {
         for linking in [Linking::Static, Linking::Shared] {
             for program in [RENDER, SAMPLING, HOSTILE] {
                 let executable = self.compiled(program, linking)?;
                 if program.takes_color {
                     self.run_with_colors(program, &executable, before)?;
                 } else {
-                    output_of(self.command(&executable, before))?;
+                    finish(self.command(&executable, before))?;
                 }
             }
         }
-        Ok(Outcome::Passed)
+        Ok(())
     }
 
     fn compiled(&self, program: Program, linking: Linking) -> Result<PathBuf, StepError> {
         let name = Path::new(program.source).file_stem().unwrap_or_default().to_string_lossy();
         let executable = self.folder.join(format!("{name}-{linking:?}").to_lowercase());
         let compile = self.compiler(program, &executable);
-        output_of(self.linked(compile, linking))?;
+        finish(self.linked(compile, linking))?;
         Ok(executable)
     }
 
@@ -237,19 +227,19 @@ impl Bench {
     /// The first program of the README, beside a cube of the name that it opens.
     fn run_readme(&self) -> Result<(), StepError> {
         let path = self.sources.join("README.md");
-        let file = |source| StepError::File { path: path.clone(), source };
-        let text = fs::read_to_string(&path).map_err(file)?;
+        let text = read(&path)?;
         let program = first_program(&text).ok_or_else(|| {
-            StepError::Found(vec![format!("{}: no block of C, expected one", path.display())])
+            StepError::found(format!("{}: no block of C, expected one", path.display()))
         })?;
+        let file = StepError::file(&self.folder);
         let (source, executable) = (self.folder.join("first.c"), self.folder.join("first"));
-        fs::write(&source, program).map_err(file)?;
+        fs::write(&source, program).map_err(&file)?;
         fs::copy(&self.cube, self.folder.join("acescg.safetensors")).map_err(file)?;
         let compile = compiler(Language::C, &source, &executable);
-        output_of(self.linked(compile, Linking::Static))?;
+        finish(self.linked(compile, Linking::Static))?;
         let mut run = Command::new(&executable);
         run.current_dir(&self.folder);
-        output_of(run).map(|_| ())
+        finish(run)
     }
 
     /// The compiler with all but what the library needs.
@@ -290,10 +280,7 @@ impl Bench {
     fn compare(&self, executable: &Path, color: [&str; 3], printed: &str) -> Result<(), StepError> {
         let mut command = Command::new(&self.upglow);
         command.args(["color", "--json"]).arg(&self.cube).args(color);
-        let report = output_of(command)?;
-        let report = serde_json::from_str(&report)
-            .map_err(|source| StepError::Json { command: "upglow color --json".into(), source })?;
-        let mut problems = differences(printed, &report);
+        let mut problems = differences(printed, &json_of(command)?);
         if problems.is_empty() {
             return Ok(());
         }
