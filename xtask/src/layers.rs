@@ -15,7 +15,7 @@ const ALLOWED: [(&str, &[&str]); 11] = [
     ("upglow-shader", &["upglow", "upglow-color"]),
     ("upglow-fit", &["upglow", "upglow-color"]),
     ("upglow-image", &["upglow-fit", "upglow", "upglow-color"]),
-    ("upglow-terminal", &["upglow-fit", "upglow"]),
+    ("upglow-terminal", &["upglow-fit", "upglow", "upglow-color"]),
     ("upglow-study", &["upglow-terminal", "upglow-fit", "upglow", "upglow-color"]),
     (
         "upglow-cli",

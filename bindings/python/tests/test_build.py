@@ -124,7 +124,7 @@ def test_unmeasured_yields_are_a_warning() -> None:
         ({"model": upglow.Dyes(mixing="x")}, 'unknown mixing "x", expected pooled or separate'),
         ({"model": upglow.Dyes(quantum_yield=2.0)}, "quantum yield 2, expected 0 to 1"),
         ({"model": upglow.Dyes(optical_density=0)}, "optical density 0, expected > 0"),
-        ({"model": upglow.Dyes(set="x")}, 'unknown dye set "x", expected seed8, open8, wide14 or'),
+        ({"model": upglow.Dyes(set="x")}, 'unknown dye set "x", expected konig8, open8, wide14 or'),
         ({"model": upglow.Analytic(emission_fwhm_nm=5)}, "width 5 nm, expected 15 to 80 nm"),
     ],
 )

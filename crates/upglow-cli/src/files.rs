@@ -1,29 +1,41 @@
-//! Files that the program reads and writes.
+//! Cubes that are read, and files that must not replace what they are made of.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use upglow::{Cube, ReadCubeError};
-pub(crate) use upglow_terminal::files::{check_output, make_folder, read_text, size, write};
-use upglow_terminal::{Failure, io_message};
+use upglow_terminal::Failure;
+
+pub(crate) use upglow_terminal::files::{check_output, make_folder, read_text, write};
 
 const A_CUBE: &str = "a cube made by `upglow build`";
 
 /// Reads a cube, or says in one line why the file is none.
 pub(crate) fn read_cube(path: &Path) -> Result<Cube, Failure> {
     Cube::read(path).map_err(|error| match error {
-        ReadCubeError::Io(error) => {
-            Failure::file(path, format_args!("{}, expected {A_CUBE}", io_message(&error)))
-        }
+        ReadCubeError::Io(error) => Failure::system(path, &error, A_CUBE),
         error => Failure::file(path, error),
     })
 }
 
-/// Checks that writing `output` does not replace the cube that was read from `input`.
-pub(crate) fn check_distinct(input: &Path, output: &Path) -> Result<(), Failure> {
-    if is_same(input, output) {
+/// The size of a file.
+pub(crate) fn bytes(path: &Path) -> Result<u64, Failure> {
+    path.metadata().map(|found| found.len()).map_err(|error| Failure::system(path, &error, A_CUBE))
+}
+
+/// Checks an output, and that writing it does not replace the cube or a picture that is read.
+pub(crate) fn check_output_of<'p>(
+    output: &Path,
+    cube: Option<&Path>,
+    pictures: impl IntoIterator<Item = &'p PathBuf>,
+) -> Result<(), Failure> {
+    if let Some(picture) = pictures.into_iter().find(|picture| is_same(picture, output)) {
+        let message = format!("the picture {} itself, expected another file", picture.display());
+        return Err(Failure::file(output, message));
+    }
+    if cube.is_some_and(|cube| is_same(cube, output)) {
         return Err(Failure::file(output, "the cube itself, expected another file to write"));
     }
-    Ok(())
+    check_output(output)
 }
 
 /// Whether two paths lead to one file or folder that is there.

@@ -1,8 +1,9 @@
-//! Text for people: columns, tables, warnings.
+//! Text for people: lines of names and values, and tables.
 
 use std::fmt::{self, Display};
 
-pub(crate) use upglow_terminal::{Format, Report};
+use upglow_fit::CubeSummary;
+use upglow_terminal::size;
 
 /// Says on standard error what the user should know although the work goes on.
 pub(crate) fn warn(message: impl Display) {
@@ -22,6 +23,29 @@ impl Lines {
         let name = if name.is_empty() { name } else { name + ":" };
         self.rows.push((name, value.to_string()));
         self
+    }
+
+    /// Adds a line of a file and its size.
+    pub(crate) fn add_file(&mut self, name: &str, file: &str, bytes: u64) -> &mut Self {
+        self.add(name, format_args!("{file}, {}", size(bytes)))
+    }
+
+    /// Adds a line for each number of a summary.
+    pub(crate) fn add_summary(&mut self, summary: &CubeSummary) -> &mut Self {
+        let width = summary.nodes.to_string().len();
+        let share = |count: usize| {
+            let percent = 100.0 * count as f64 / summary.nodes.max(1) as f64;
+            format!("{count:width$}  {percent:6.2} %")
+        };
+        let exact = format!("{}  ΔE00 ≤ {}", share(summary.exact), CubeSummary::EXACT_DE2000);
+        self.add("nodes", summary.nodes)
+            .add("exact", exact)
+            .add("within 1", format_args!("{}  ΔE00 ≤ 1", share(summary.within_1)))
+            .add("within 2", format_args!("{}  ΔE00 ≤ 2", share(summary.within_2)))
+            .add("fluorescent", share(summary.fluorescent))
+            .add("mean ΔE00", format_args!("{:.3}", summary.mean_de2000))
+            .add("p95 ΔE00", format_args!("{:.3}", summary.p95_de2000))
+            .add("max ΔE00", format_args!("{:.3}", summary.max_de2000))
     }
 }
 
@@ -78,11 +102,6 @@ impl<const N: usize> Display for Table<N> {
         }
         Ok(())
     }
-}
-
-/// The same number, without the sign of a negative zero.
-pub(crate) fn unsigned_zero(value: f64) -> f64 {
-    value + 0.0
 }
 
 /// Three numbers to four decimals, in columns.

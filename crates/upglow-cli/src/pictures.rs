@@ -2,24 +2,10 @@
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
-
-use upglow_color::RgbSpace;
-use upglow_image::{Assumed, Encoding};
-use upglow_terminal::{Failure, io_message};
-
-use crate::args::PictureArgs;
-use crate::plan;
+use upglow_terminal::Failure;
 
 /// Suffixes of the pictures that are taken from a folder.
 const SUFFIXES: [&str; 4] = ["exr", "tif", "tiff", "png"];
-
-/// What is taken for granted of pictures that do not say it themselves.
-pub(crate) fn assumed(args: &PictureArgs) -> Result<Assumed, Failure> {
-    let space: Option<RgbSpace> = args.space.as_deref().map(plan::space).transpose()?;
-    let encoding = args.encoding.as_deref().map(str::parse::<Encoding>).transpose();
-    let encoding = encoding.map_err(|error| Failure::option("--encoding", error))?;
-    Ok(Assumed { space, encoding })
-}
 
 /// The pictures that were named, and those in the folders that were named, sorted by name there.
 pub(crate) fn find(inputs: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
@@ -35,7 +21,7 @@ pub(crate) fn find(inputs: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
             let suffixes = SUFFIXES.join(", ");
             return Err(Failure::file(
                 input,
-                format_args!("a folder without pictures, expected files that end in {suffixes}"),
+                format!("a folder without pictures, expected files that end in {suffixes}"),
             ));
         }
         found.extend(pictures);
@@ -45,18 +31,17 @@ pub(crate) fn find(inputs: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
 
 /// Checks that a file that was named can be read, before others are worked on.
 pub(crate) fn check_there(path: &Path, expected: &str) -> Result<(), Failure> {
-    let found = match std::fs::File::open(path) {
-        Ok(_) if path.is_dir() => "a folder".to_owned(),
-        Ok(_) => return Ok(()),
-        Err(error) => io_message(&error),
-    };
-    Err(Failure::file(path, format_args!("{found}, expected {expected}")))
+    match std::fs::File::open(path) {
+        Ok(_) if path.is_dir() => {
+            Err(Failure::file(path, format!("a folder, expected {expected}")))
+        }
+        Ok(_) => Ok(()),
+        Err(error) => Err(Failure::system(path, &error, expected)),
+    }
 }
 
 fn pictures_in(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
-    let unread = |error| {
-        Failure::file(folder, format_args!("{}, expected a folder of pictures", io_message(&error)))
-    };
+    let unread = |error| Failure::system(folder, &error, "a folder of pictures");
     let mut pictures = Vec::new();
     for entry in folder.read_dir().map_err(unread)? {
         let path = entry.map_err(unread)?.path();
@@ -90,7 +75,7 @@ pub(crate) fn outputs(
             }
             count => Err(Failure::file(
                 output,
-                format_args!("one file for {count} pictures, expected a folder"),
+                format!("one file for {count} pictures, expected a folder"),
             )),
         };
     }
@@ -101,7 +86,7 @@ pub(crate) fn outputs(
             let twin = inputs[twin].display();
             return Err(Failure::file(
                 input,
-                format_args!("has the name of {twin}, expected names that differ without suffix"),
+                format!("has the name of {twin}, expected names that differ without suffix"),
             ));
         }
         outputs.push(path);

@@ -1,18 +1,16 @@
 //! What was typed, checked and resolved: what is to be done.
 
-use std::fmt::Display;
-use std::num::NonZeroUsize;
-use std::path::{Path, PathBuf};
+use std::error::Error;
+use std::path::Path;
 
 use upglow::{
-    AnalyticModel, DyeModel, DyeOptions, DyeSet, DyeSetError, Interpolation, Model, ModelError,
-    QuantumYield,
+    AnalyticModel, DyeModel, DyeOptions, DyeSet, DyeSetError, Model, ModelError, QuantumYield,
 };
-use upglow_color::{Contract, Illuminant, LinearRgb, Observer, RgbSpace};
+use upglow_color::{Choice, Contract, Illuminant, LinearRgb, Observer};
 use upglow_fit::{FitOptions, Fitter};
 use upglow_terminal::Failure;
 
-use crate::args::{BuildArgs, ColorArgs, ModelName};
+use crate::args::{BuildArgs, ColorArgs, ContractArgs, ModelArgs, ModelName};
 use crate::files;
 
 /// A cube to build.
@@ -21,66 +19,55 @@ pub(crate) struct BuildPlan {
     pub(crate) contract: Contract,
     pub(crate) model: Model,
     pub(crate) options: FitOptions,
-    pub(crate) resolution: usize,
-    pub(crate) threads: Option<NonZeroUsize>,
-    pub(crate) output: PathBuf,
 }
 
 impl BuildPlan {
     /// Checks everything that can be checked before the work starts, the output last.
     pub(crate) fn new(args: &BuildArgs) -> Result<Self, Failure> {
-        let contract = Contract {
-            space: space(&args.space)?,
-            illuminant: light("--illuminant", &args.illuminant)?,
-            observer: observer("--observer", &args.observer)?,
-            adaptation: args.adapt,
-        };
-        check(&contract)?;
-        let model = model(args)?;
+        let contract = contract(&args.contract)?;
+        let model = model(&args.model)?;
         let options = FitOptions {
-            metric: args.metric,
-            slope_max_per_nm: args.slope_max_per_nm.0,
-            sweeps: args.sweeps.unwrap_or(args.method.default_sweeps()),
-            method: args.method,
+            metric: args.fit.metric,
+            slope_max_per_nm: args.fit.slope_max_per_nm,
+            sweeps: args.fit.sweeps.unwrap_or(args.fit.method.default_sweeps()),
+            method: args.fit.method,
         };
         Fitter::new(&contract, &model, options)
             .map_err(|error| Failure::option("--slope-max-per-nm", error))?;
         files::check_output(&args.output)?;
-        Ok(Self {
-            contract,
-            model,
-            options,
-            resolution: args.resolution,
-            threads: args.threads,
-            output: args.output.clone(),
-        })
+        Ok(Self { contract, model, options })
     }
 }
 
-pub(crate) fn space(text: &str) -> Result<RgbSpace, Failure> {
-    let refused = |error| Failure::option("--space", error);
-    let numbers: Option<Vec<f64>> = text.split(',').map(|cell| cell.trim().parse().ok()).collect();
-    match numbers.as_deref() {
-        Some(&[rx, ry, gx, gy, bx, by, wx, wy]) => {
-            RgbSpace::custom("custom", [[rx, ry], [gx, gy], [bx, by]], [wx, wy]).map_err(refused)
-        }
-        _ => RgbSpace::named(text).map_err(refused),
-    }
+fn contract(args: &ContractArgs) -> Result<Contract, Failure> {
+    checked(Contract {
+        space: args.space.clone(),
+        illuminant: light("--illuminant", &args.illuminant)?,
+        observer: named_or_read(
+            "--observer",
+            &args.observer,
+            "x,y,z",
+            Observer::named,
+            Observer::from_csv,
+        )?,
+        adaptation: args.adapt,
+    })
+}
+
+/// Refuses a light that the observer does not see.
+pub(crate) fn checked(contract: Contract) -> Result<Contract, Failure> {
+    contract.check().map_err(|error| Failure::option("--illuminant", error))?;
+    Ok(contract)
 }
 
 /// A light by name or file, given with `option`.
-pub(crate) fn light(option: &'static str, text: &str) -> Result<Illuminant, Failure> {
+pub(crate) fn light(option: &str, text: &str) -> Result<Illuminant, Failure> {
     named_or_read(option, text, "power", Illuminant::named, Illuminant::from_csv)
 }
 
-/// An observer by name or file, given with `option`.
-fn observer(option: &'static str, text: &str) -> Result<Observer, Failure> {
-    named_or_read(option, text, "x,y,z", Observer::named, Observer::from_csv)
-}
-
 /// What a built-in name says, else the CSV file at that path, which is called like itself.
-fn named_or_read<T, E: Display>(
-    option: &'static str,
+fn named_or_read<T, E: Error + Send + Sync + 'static>(
+    option: &str,
     text: &str,
     columns: &str,
     named: fn(&str) -> Result<T, E>,
@@ -98,29 +85,29 @@ fn named_or_read<T, E: Display>(
     }
 }
 
-/// Refuses a light that the observer does not see.
-pub(crate) fn check(contract: &Contract) -> Result<(), Failure> {
-    contract.check().map_err(|error| Failure::option("--illuminant", error))
-}
-
 /// Whether a word that is no built-in name is meant as a file or folder.
 fn is_path(path: &Path) -> bool {
     path.exists() || path.components().count() > 1 || path.extension().is_some()
 }
 
-fn model(args: &BuildArgs) -> Result<Model, Failure> {
-    refuse_what_does_not_apply(args)?;
-    match args.model {
-        ModelName::Reflectance => Ok(Model::Reflectance),
-        ModelName::Dyes => dye_model(args).map(Model::Dyes),
-        ModelName::Analytic => analytic_model(args).map(Model::Analytic),
-    }
+/// No option is ignored: one that was given but does not apply to what `chooser` chose is an error.
+/// Each option comes with whether it was given, and the choices it applies to.
+pub(crate) fn refuse_ignored<T: Choice + PartialEq>(
+    chooser: &str,
+    chosen: T,
+    options: &[(&str, bool, &[T])],
+) -> Result<(), Failure> {
+    let ignored = |(_, given, choices): &&(&str, bool, &[T])| *given && !choices.contains(&chosen);
+    let Some((option, _, choices)) = options.iter().find(ignored) else { return Ok(()) };
+    let names: Vec<&str> = choices.iter().map(|choice| choice.name()).collect();
+    let (found, expected) = (chosen.name(), names.join(" or "));
+    let message = format!("given with {chooser} {found}, expected {chooser} {expected}");
+    Err(Failure::option(option, message))
 }
 
-/// No option is ignored: one that the model does not have is an error.
-fn refuse_what_does_not_apply(args: &BuildArgs) -> Result<(), Failure> {
+fn model(args: &ModelArgs) -> Result<Model, Failure> {
     use ModelName::{Analytic, Dyes};
-    let options: [(&'static str, bool, &[ModelName]); 7] = [
+    let options: [(&str, bool, &[ModelName]); 7] = [
         ("--dyes", args.dyes.is_some(), &[Dyes]),
         ("--mixing", args.mixing.is_some(), &[Dyes]),
         ("--optical-density", args.optical_density.is_some(), &[Dyes]),
@@ -129,21 +116,16 @@ fn refuse_what_does_not_apply(args: &BuildArgs) -> Result<(), Failure> {
         ("--absorption-fwhm-nm", args.absorption_fwhm_nm.is_some(), &[Analytic]),
         ("--emission-fwhm-nm", args.emission_fwhm_nm.is_some(), &[Analytic]),
     ];
-    for (option, given, models) in options {
-        if given && !models.contains(&args.model) {
-            let names: Vec<&str> = models.iter().map(|model| model.name()).collect();
-            let (found, expected) = (args.model.name(), names.join(" or "));
-            return Err(Failure::option(
-                option,
-                format_args!("given with --model {found}, expected --model {expected}"),
-            ));
-        }
+    refuse_ignored("--model", args.name, &options)?;
+    match args.name {
+        ModelName::Reflectance => Ok(Model::Reflectance),
+        ModelName::Dyes => dye_model(args).map(Model::Dyes),
+        ModelName::Analytic => analytic_model(args).map(Model::Analytic),
     }
-    Ok(())
 }
 
-fn dye_model(args: &BuildArgs) -> Result<DyeModel, Failure> {
-    let set = dye_set(args.dyes.as_deref().unwrap_or("seed8"))?;
+fn dye_model(args: &ModelArgs) -> Result<DyeModel, Failure> {
+    let set = dye_set(args.dyes.as_deref().unwrap_or("konig8"))?;
     let defaults = DyeOptions::default();
     let options = DyeOptions {
         accounting: args.accounting.unwrap_or(defaults.accounting),
@@ -168,21 +150,18 @@ fn dye_set(text: &str) -> Result<DyeSet, Failure> {
 fn folder_failure(folder: &Path, error: DyeSetError) -> Failure {
     match error {
         DyeSetError::Read { path, source } => {
-            let found = upglow_terminal::io_message(&source);
-            Failure::file(&path, format_args!("{found}, expected a folder of CSV files"))
+            Failure::system(&path, &source, "a folder of CSV files")
         }
         DyeSetError::Csv { path, source } => Failure::file(&path, source),
         DyeSetError::QuantumYield { path, dye, found } => Failure::file(
             &path,
-            format_args!(
-                "quantum yield {found:?} of {dye}, expected a number from 0 to 1 or nothing"
-            ),
+            format!("quantum yield {found:?} of {dye}, expected a number from 0 to 1 or nothing"),
         ),
         error => Failure::file(folder, error),
     }
 }
 
-fn analytic_model(args: &BuildArgs) -> Result<AnalyticModel, Failure> {
+fn analytic_model(args: &ModelArgs) -> Result<AnalyticModel, Failure> {
     let defaults = AnalyticModel::default();
     let quantum_yield = match args.quantum_yield {
         None => defaults.quantum_yield(),
@@ -216,106 +195,49 @@ fn model_failure(error: ModelError) -> Failure {
     Failure::option(option, error)
 }
 
-/// A color to show.
-#[derive(Clone, Debug)]
-pub(crate) struct ColorPlan {
-    pub(crate) file: PathBuf,
-    pub(crate) rgb: LinearRgb,
-    pub(crate) way: Way,
-    pub(crate) plot: Option<PathBuf>,
-    pub(crate) plot_terminal: bool,
+/// The color that was typed, in the range that a look-up or a direct fit allows.
+pub(crate) fn color(args: &ColorArgs) -> Result<LinearRgb, Failure> {
+    let [red, green, blue] = [("R", &args.red), ("G", &args.green), ("B", &args.blue)]
+        .map(|(channel, text)| component(channel, text, args.direct));
+    Ok(LinearRgb([red?, green?, blue?]))
 }
 
-/// How a color gets its material.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Way {
-    Lookup(Interpolation),
-    Direct,
-}
-
-impl ColorPlan {
-    pub(crate) fn new(args: &ColorArgs) -> Result<Self, Failure> {
-        let way = match args.direct {
-            true => Way::Direct,
-            false => Way::Lookup(args.interpolation.unwrap_or_default()),
-        };
-        let channels = [("R", &args.red), ("G", &args.green), ("B", &args.blue)];
-        let mut rgb = [0.0; 3];
-        for (value, (channel, text)) in rgb.iter_mut().zip(channels) {
-            *value = component(channel, text, way)?;
-        }
-        if let Some(plot) = &args.plot {
-            files::check_output(plot)?;
-            files::check_distinct(&args.file, plot)?;
-        }
-        Ok(Self {
-            file: args.file.clone(),
-            rgb: LinearRgb(rgb),
-            way,
-            plot: args.plot.clone(),
-            plot_terminal: args.plot_terminal,
-        })
-    }
-}
-
-/// One component of a color, in the range that the way to its material allows.
-fn component(channel: &str, text: &str, way: Way) -> Result<f64, Failure> {
+fn component(channel: &str, text: &str, direct: bool) -> Result<f64, Failure> {
     let brightest = Fitter::BRIGHTEST;
-    let most = match way {
-        Way::Lookup(_) => 1.0,
-        Way::Direct => brightest,
+    let most = if direct { brightest } else { 1.0 };
+    let fault = match text.trim().parse::<f64>() {
+        Ok(value) if (0.0..=most).contains(&value) => return Ok(value),
+        Ok(value) if (0.0..=brightest).contains(&value) => format!(
+            "{text} is beyond the cube, expected 0 to 1, or --direct, which fits colors up to {brightest}"
+        ),
+        Ok(_) => format!("{text}, expected 0 to {most}"),
+        Err(_) => format!("{text:?}, expected a number from 0 to {most}"),
     };
-    match text.trim().parse::<f64>() {
-        Ok(value) if (0.0..=most).contains(&value) => Ok(value),
-        Ok(value) if (0.0..=brightest).contains(&value) => Err(Failure::input(
-            channel,
-            format_args!(
-                "{text} is beyond the cube, expected 0 to 1, or --direct, which fits colors up to {brightest}"
-            ),
-        )),
-        Ok(_) => Err(Failure::input(channel, format_args!("{text}, expected 0 to {most}"))),
-        Err(_) => Err(Failure::input(
-            channel,
-            format_args!("{text:?}, expected a number from 0 to {most}"),
-        )),
-    }
+    Err(Failure::input(channel, fault))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn message(result: Result<f64, Failure>) -> String {
-        match result.unwrap_err() {
-            Failure::Input(line) | Failure::Usage(line) => line.to_string(),
-            other => format!("{other:?}"),
-        }
-    }
-
     #[test]
     fn components_are_numbers_in_range() {
-        let lookup = Way::Lookup(Interpolation::Blend);
-        assert_eq!(component("R", "0.5", lookup), Ok(0.5));
-        assert_eq!(component("R", "1.58", Way::Direct), Ok(1.58));
-        assert_eq!(message(component("G", "-0.5", lookup)), "G: -0.5, expected 0 to 1");
-        assert_eq!(message(component("G", "NaN", lookup)), "G: NaN, expected 0 to 1");
-        assert_eq!(message(component("G", "inf", Way::Direct)), "G: inf, expected 0 to 10");
-        assert_eq!(
-            message(component("B", "blue", lookup)),
-            "B: \"blue\", expected a number from 0 to 1"
-        );
-        assert_eq!(
-            message(component("B", "1.58", lookup)),
-            "B: 1.58 is beyond the cube, expected 0 to 1, or --direct, which fits colors up to 10"
-        );
-    }
-
-    #[test]
-    fn eight_numbers_are_a_space() {
-        let custom = space("0.64,0.33,0.30,0.60,0.15,0.06,0.3127,0.3290");
-        assert!(custom.is_ok_and(|space| space.name() == "custom"));
-        assert!(space("rec709").is_err());
-        assert!(space("0.64,0.33").is_err());
+        assert_eq!(component("R", "0.5", false), Ok(0.5));
+        assert_eq!(component("R", "1.58", true), Ok(1.58));
+        for (channel, text, direct, line) in [
+            ("G", "-0.5", false, "G: -0.5, expected 0 to 1"),
+            ("G", "NaN", false, "G: NaN, expected 0 to 1"),
+            ("G", "inf", true, "G: inf, expected 0 to 10"),
+            ("B", "blue", false, "B: \"blue\", expected a number from 0 to 1"),
+            (
+                "B",
+                "1.58",
+                false,
+                "B: 1.58 is beyond the cube, expected 0 to 1, or --direct, which fits colors up to 10",
+            ),
+        ] {
+            assert_eq!(component(channel, text, direct), Err(Failure::Input(line.into())));
+        }
     }
 
     #[test]

@@ -207,8 +207,8 @@ fn what_cannot_be_baked_is_repaired_only_if_asked() {
     let line = folder.refused(1, "bake cube bright.exr -o out.exr");
     assert_eq!(
         line,
-        "bright.exr: texel 1,0: red is 4, expected 0 to 1, the range of the cube; so are 1 more in \
-         the same rows; give --repair clip, scale or nearest"
+        "bright.exr: texel 1,0, and 1 more in the same rows: red is 4, expected 0 to 1, the range of \
+         the cube; give --repair clip, scale or nearest"
     );
     for (repair, count) in [("clip", 2), ("scale", 4), ("nearest", 2)] {
         let told = folder.json(&format!("bake cube bright.exr -o out.exr --repair {repair}"));

@@ -69,15 +69,23 @@ pub fn measured_dye(name: &str) -> Option<MeasuredDye> {
     DYES.iter().find(|row| row.name == name).map(MeasuredDye::from)
 }
 
+/// Sets whose word is not the name that cubes were first written with; files keep that name.
+const RENAMED: [(&str, &str); 1] = [("konig8", "seed8")];
+
 /// The names of the built-in sets.
 pub fn dye_set_names() -> impl Iterator<Item = &'static str> {
-    DYE_SETS.iter().map(|(name, _)| *name)
+    DYE_SETS.iter().map(|(stored, _)| {
+        RENAMED.iter().find(|(_, old)| old == stored).map_or(*stored, |(name, _)| *name)
+    })
 }
 
 /// The dyes of a built-in set in ring order: sorted by emission hue, the last beside the first.
-pub fn dye_set(name: &str) -> Option<Vec<MeasuredDye>> {
-    let (_, dyes) = DYE_SETS.iter().find(|(known, _)| *known == name)?;
-    dyes.iter().map(|dye| measured_dye(dye)).collect()
+/// With them comes the name of the set in files.
+pub fn dye_set(name: &str) -> Option<(&'static str, Vec<MeasuredDye>)> {
+    let stored = RENAMED.iter().find(|(new, _)| *new == name).map_or(name, |(_, stored)| *stored);
+    let (stored, dyes) = DYE_SETS.iter().find(|(known, _)| *known == stored)?;
+    let dyes: Option<Vec<_>> = dyes.iter().map(|dye| measured_dye(dye)).collect();
+    Some((*stored, dyes?))
 }
 
 #[cfg(test)]
@@ -99,7 +107,7 @@ mod tests {
 
     #[test]
     fn every_set_is_complete_and_every_curve_is_a_fraction() {
-        let sizes: Vec<usize> = dye_set_names().map(|n| dye_set(n).unwrap().len()).collect();
+        let sizes: Vec<usize> = dye_set_names().map(|n| dye_set(n).unwrap().1.len()).collect();
         assert_eq!(sizes, [8, 8, 14]);
         for dye in measured_dyes() {
             for curve in [&dye.absorption, &dye.emission] {

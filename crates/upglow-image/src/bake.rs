@@ -105,7 +105,7 @@ pub enum BakeError {
     #[error(transparent)]
     Compact(#[from] CompactError),
     /// A texel has no material.
-    #[error("texel {x},{y}: {source}{}", and_others(*.others))]
+    #[error("texel {x},{y}{}", and_others(*.others))]
     Texel {
         /// Column, from 0 at the left.
         x: usize,
@@ -127,7 +127,7 @@ pub enum BakeError {
 fn and_others(count: usize) -> String {
     match count {
         0 => String::new(),
-        count => format!("; so are {count} more in the same rows"),
+        count => format!(", and {count} more in the same rows"),
     }
 }
 

@@ -28,7 +28,7 @@ use crate::picture::encoding::Encoding;
 #[non_exhaustive]
 pub enum PictureError {
     /// The file cannot be read.
-    #[error("{0}")]
+    #[error(transparent)]
     Io(#[from] io::Error),
     /// The file is of none of the formats.
     #[error("the file begins with {found:02x?}, expected an OpenEXR, TIFF or PNG picture")]
@@ -40,10 +40,10 @@ pub enum PictureError {
     #[error(transparent)]
     Exr(#[from] ExrError),
     /// A PNG file that cannot be read.
-    #[error("{0}, expected a whole PNG picture")]
+    #[error("damaged, expected a whole PNG picture")]
     Png(#[from] ::png::DecodingError),
     /// A TIFF file that cannot be read.
-    #[error("{0}, expected a whole TIFF picture")]
+    #[error("damaged, expected a whole TIFF picture")]
     Tiff(#[from] ::tiff::TiffError),
     /// A kind of pixels that is not read.
     #[error("{found}, expected {expected}")]

@@ -578,17 +578,17 @@ fn a_texel_outside_is_refused_by_its_place_and_the_old_file_stays() {
         ([0.5, f32::INFINITY, 0.5], "green is inf, expected 0 to 1, the range of the cube"),
     ];
     for (flaw, expected) in flaws {
-        for (place, others) in [(3 + 7 * 90, ""), (5, "; so are 1 more in the same rows")] {
+        for (place, others) in [(3 + 7 * 90, ""), (5, ", and 1 more in the same rows")] {
             let mut rgb = random_colors(7 * 100);
             rgb[place] = flaw;
             rgb[place + usize::from(!others.is_empty())] = flaw;
             let input = desk.picture("in.exr", 7, &rgb, None);
             let refused = bake(cube(), POLISHED, options(Sample::Half), &input, &output);
             let (x, y) = (place % 7, place / 7);
-            assert_eq!(
-                refused.unwrap_err().to_string(),
-                format!("texel {x},{y}: {expected}{others}")
-            );
+            let refused = refused.unwrap_err();
+            let cause = std::error::Error::source(&refused).map(ToString::to_string);
+            assert_eq!(refused.to_string(), format!("texel {x},{y}{others}"));
+            assert_eq!(cause.as_deref(), Some(expected));
             assert_eq!(std::fs::read(&output).unwrap(), b"old");
         }
     }

@@ -4,13 +4,12 @@ use std::path::Path;
 
 use upglow::{Aside, AsideError, write_whole};
 
-use crate::failure::{Failure, io_message};
+use crate::failure::Failure;
+use crate::output::size;
 
 /// Reads text, which `expected` names.
 pub fn read_text(path: &Path, expected: &str) -> Result<String, Failure> {
-    std::fs::read_to_string(path).map_err(|error| {
-        Failure::file(path, format_args!("{}, expected {expected}", io_message(&error)))
-    })
+    std::fs::read_to_string(path).map_err(|error| Failure::system(path, &error, expected))
 }
 
 /// Checks that a file can be written at `path`, before long work starts for it.
@@ -23,22 +22,18 @@ pub fn check_output(path: &Path) -> Result<(), Failure> {
         Err(_) => None,
     };
     if let Some(kind) = kind {
-        return Err(Failure::file(path, format_args!("{kind}, expected a file to write")));
+        return Err(Failure::file(path, format!("{kind}, expected a file to write")));
     }
     let folder = folder_of(path);
     if !folder.is_dir() {
-        let folder = folder.display();
-        return Err(Failure::file(
-            path,
-            format_args!("no folder {folder}, expected an existing one"),
-        ));
+        let message = format!("no folder {}, expected an existing one", folder.display());
+        return Err(Failure::file(path, message));
     }
     match Aside::create(path) {
         Ok(_) => Ok(()),
         Err(AsideError::Io(error)) => {
-            let (found, folder) = (io_message(&error), folder.display());
-            let message = format_args!("{found} in folder {folder}, expected one to write in");
-            Err(Failure::file(path, message))
+            let expected = format!("a folder to write in, other than {}", folder.display());
+            Err(Failure::system(path, &error, expected))
         }
         Err(error) => Err(Failure::file(path, error)),
     }
@@ -47,35 +42,18 @@ pub fn check_output(path: &Path) -> Result<(), Failure> {
 /// Writes a file that appears whole or not at all.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     write_whole(path, bytes).map_err(|error| match error {
-        AsideError::Io(error) => Failure::file(
-            path,
-            format_args!(
-                "{}, expected room for {} and the right to write",
-                io_message(&error),
-                size(bytes.len() as u64)
-            ),
-        ),
+        AsideError::Io(error) => {
+            let room = size(bytes.len() as u64);
+            Failure::system(path, &error, format!("room for {room} and the right to write"))
+        }
         error => Failure::file(path, error),
     })
 }
 
 /// Makes a folder and those above it, where they are not there.
 pub fn make_folder(path: &Path) -> Result<(), Failure> {
-    std::fs::create_dir_all(path).map_err(|error| {
-        let found = io_message(&error);
-        Failure::file(path, format_args!("{found}, expected a folder to write in"))
-    })
-}
-
-/// A number of bytes for people: 1.23 MB.
-pub fn size(bytes: u64) -> String {
-    let bytes = bytes as f64;
-    match bytes {
-        b if b < 1e3 => format!("{b} bytes"),
-        b if b < 1e6 => format!("{:.1} kB", b / 1e3),
-        b if b < 1e9 => format!("{:.2} MB", b / 1e6),
-        b => format!("{:.2} GB", b / 1e9),
-    }
+    std::fs::create_dir_all(path)
+        .map_err(|error| Failure::system(path, &error, "a folder to write in"))
 }
 
 fn folder_of(path: &Path) -> &Path {
@@ -85,11 +63,6 @@ fn folder_of(path: &Path) -> &Path {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn sizes_are_readable() {
-        assert_eq!([999, 12_345, 1_234_567].map(size), ["999 bytes", "12.3 kB", "1.23 MB"]);
-    }
 
     #[test]
     fn checking_an_output_leaves_nothing() {

@@ -1,4 +1,4 @@
-//! What the programs `upglow` and `upglow-study` share: how they read numbers of the command line,
+//! What the programs `upglow` and `upglow-study` share: how they read the command line,
 //! end, print, show progress and write files.
 //!
 //! Data goes to standard output; progress, warnings and errors go to standard error. A program that
@@ -6,20 +6,18 @@
 
 mod failure;
 pub mod files;
-mod numbers;
 mod output;
 mod progress;
-mod threads;
+mod values;
 
 use std::process::ExitCode;
 
 use clap::Parser;
 
-pub use failure::{Failure, Line, io_message};
-pub use numbers::{in_range, whole};
-pub use output::{Format, Report};
-pub use progress::Bar;
-pub use threads::{on_threads, threads};
+pub use failure::Failure;
+pub use output::{Console, Report, size};
+pub use progress::{Bar, Threads, check_stopped};
+pub use values::{Word, count, in_range, number, parsed, word};
 
 /// Reads the command line, does what it asks for, and gives the status to exit with.
 ///

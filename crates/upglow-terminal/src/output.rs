@@ -1,10 +1,12 @@
-//! Results on standard output: text for people, or one JSON document.
+//! Results on standard output: text for people, or JSON.
 
+use std::cell::Cell;
 use std::io::{self, Write as _};
+use std::path::Path;
 
 use serde::Serialize;
 
-use crate::failure::{Failure, io_message};
+use crate::failure::Failure;
 
 /// What a command has found.
 pub trait Report: Serialize {
@@ -12,40 +14,59 @@ pub trait Report: Serialize {
     fn text(&self) -> String;
 }
 
-/// How results are printed. JSON takes one line, so that the results of many runs are JSON Lines.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
-    /// For people.
-    Text,
-    /// One document, on one line.
-    Json,
+/// How results are printed, and whether progress is shown.
+#[derive(Clone, Debug, clap::Args)]
+pub struct Console {
+    /// Print the result as JSON, one document per line
+    #[arg(long, global = true)]
+    pub json: bool,
+    /// Do not show progress
+    #[arg(long, short, global = true)]
+    pub(crate) quiet: bool,
+    /// Whether a report was printed.
+    #[arg(skip)]
+    printed: Cell<bool>,
 }
 
-impl Format {
-    /// Prints a report on standard output.
-    pub fn print(self, report: &impl Report) -> Result<(), Failure> {
-        let text = match self {
-            Self::Text => report.text(),
-            Self::Json => serde_json::to_string(report)
-                .map(|json| json + "\n")
-                .map_err(|error| Failure::input("standard output", error))?,
+impl Console {
+    /// Prints a report on standard output; text for people after a blank line, if it is not the first.
+    ///
+    /// # Errors
+    ///
+    /// [`Failure`] if standard output takes no more.
+    pub fn print(&self, report: &impl Report) -> Result<(), Failure> {
+        let text = if self.json {
+            serde_json::to_string(report).map(|json| json + "\n").map_err(io::Error::from)
+        } else {
+            let blank = if self.printed.replace(true) { "\n" } else { "" };
+            Ok(blank.to_owned() + &report.text())
         };
-        print(&text)
-    }
-
-    /// A blank line before report `number`, from 0, of several for people.
-    pub fn separate(self, number: usize) -> Result<(), Failure> {
-        if self == Self::Text && number > 0 { print("\n") } else { Ok(()) }
+        let mut stdout = io::stdout().lock();
+        let printed = text.and_then(|text| stdout.write_all(text.as_bytes()));
+        printed.and_then(|()| stdout.flush()).map_err(|error| match error.kind() {
+            io::ErrorKind::BrokenPipe => Failure::OutputClosed,
+            _ => Failure::system(Path::new("standard output"), &error, "room"),
+        })
     }
 }
 
-fn print(text: &str) -> Result<(), Failure> {
-    let mut stdout = io::stdout().lock();
-    stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()).map_err(|error| {
-        if error.kind() == io::ErrorKind::BrokenPipe {
-            return Failure::OutputClosed;
-        }
-        let found = io_message(&error);
-        Failure::input("standard output", format_args!("{found}, expected room"))
-    })
+/// A number of bytes for people: 1.23 MB.
+pub fn size(bytes: u64) -> String {
+    let bytes = bytes as f64;
+    match bytes {
+        b if b < 1e3 => format!("{b} bytes"),
+        b if b < 1e6 => format!("{:.1} kB", b / 1e3),
+        b if b < 1e9 => format!("{:.2} MB", b / 1e6),
+        b => format!("{:.2} GB", b / 1e9),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_are_readable() {
+        assert_eq!([999, 12_345, 1_234_567].map(size), ["999 bytes", "12.3 kB", "1.23 MB"]);
+    }
 }

@@ -1,13 +1,31 @@
-//! Progress on standard error, and Ctrl-C.
+//! Work on many threads, with progress on standard error, and Ctrl-C.
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use upglow_fit::{Progress, Watch};
 
+use crate::failure::Failure;
+use crate::output::Console;
+use crate::values::in_range;
+
 /// Redrawing more often than this many times a second costs time and shows nothing more.
 const REDRAWS_PER_S: u8 = 10;
+
+/// Whether Ctrl-C or termination was asked for.
+static STOPPED: AtomicBool = AtomicBool::new(false);
+
+/// More threads than this are a typing error: they would take the machine's memory.
+const MOST_THREADS: usize = 1024;
+
+/// The option for the number of threads.
+#[derive(Clone, Copy, Debug, clap::Args)]
+pub struct Threads {
+    /// Number of threads; results are the same for any number [default: one per core]
+    #[arg(long, value_name = "N", value_parser = in_range([1, MOST_THREADS]))]
+    threads: Option<usize>,
+}
 
 /// A bar for the work in hand, with the time left; nothing where standard error is not a terminal.
 ///
@@ -16,13 +34,33 @@ const REDRAWS_PER_S: u8 = 10;
 pub struct Bar {
     bar: ProgressBar,
     stage: Mutex<&'static str>,
-    stopped: Arc<AtomicBool>,
+}
+
+impl Console {
+    /// Does work on so many threads, under a bar unless the user wants quiet.
+    ///
+    /// # Errors
+    ///
+    /// [`Failure::Input`] if the system does not give so many threads.
+    pub fn work<T: Send>(
+        &self,
+        threads: Threads,
+        work: impl FnOnce(&Bar) -> T + Send,
+    ) -> Result<T, Failure> {
+        let bar = Bar::start(self.quiet);
+        let pool =
+            rayon::ThreadPoolBuilder::new().num_threads(threads.threads.unwrap_or(0)).build();
+        let pool = pool.map_err(|error| {
+            Failure::input("--threads", format!("{error}, expected fewer threads"))
+        })?;
+        let done = pool.install(|| work(&bar));
+        bar.bar.finish_and_clear();
+        Ok(done)
+    }
 }
 
 impl Bar {
-    /// Starts to watch; `quiet` draws nothing.
-    #[must_use]
-    pub fn start(quiet: bool) -> Self {
+    fn start(quiet: bool) -> Self {
         let target = if quiet {
             ProgressDrawTarget::hidden()
         } else {
@@ -31,22 +69,25 @@ impl Bar {
         let bar = ProgressBar::with_draw_target(Some(1), target)
             .with_style(style())
             .with_message("starting");
-        let stopped = Arc::new(AtomicBool::new(false));
-        let flag = Arc::clone(&stopped);
-        // Without a handler Ctrl-C ends the program at once; files appear whole or not at all then too.
-        let _ = ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed));
-        Self { bar, stage: Mutex::new(""), stopped }
-    }
-
-    /// Takes the bar away.
-    pub fn finish(&self) {
-        self.bar.finish_and_clear();
+        // Without a handler Ctrl-C ends the program at once; files appear whole or not at all then
+        // too. A second piece of work finds the handler of the first.
+        let _ = ctrlc::set_handler(|| STOPPED.store(true, Ordering::Relaxed));
+        Self { bar, stage: Mutex::new("") }
     }
 }
 
 fn style() -> ProgressStyle {
     ProgressStyle::with_template("{msg} {wide_bar} {percent:>3}%  {elapsed} so far, {eta} left")
         .unwrap_or_else(|_| ProgressStyle::default_bar())
+}
+
+/// Refuses to go on after Ctrl-C.
+///
+/// # Errors
+///
+/// [`Failure::Stopped`].
+pub fn check_stopped() -> Result<(), Failure> {
+    if STOPPED.load(Ordering::Relaxed) { Err(Failure::Stopped) } else { Ok(()) }
 }
 
 impl Watch for Bar {
@@ -70,6 +111,6 @@ impl Watch for Bar {
     }
 
     fn stopped(&self) -> bool {
-        self.stopped.load(Ordering::Relaxed)
+        check_stopped().is_err()
     }
 }

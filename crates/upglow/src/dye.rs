@@ -110,8 +110,9 @@ impl DyeSet {
     ///
     /// [`DyeSetError::Unknown`] lists the names there are.
     pub fn named(name: &str) -> Result<Self, DyeSetError> {
-        let dyes = dye_set(name).ok_or_else(|| DyeSetError::Unknown { found: name.into() })?;
-        Self::new(name, dyes)
+        let set = dye_set(name).ok_or_else(|| DyeSetError::Unknown { found: name.into() });
+        let (stored_name, dyes) = set?;
+        Self::new(stored_name, dyes)
     }
 
     /// The dyes in a folder of CSV files, `wavelength_nm,absorption,emission` each, as a ring

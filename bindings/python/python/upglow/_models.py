@@ -53,7 +53,7 @@ class Dyes:
     Parameters
     ----------
     set
-        A built-in set (``seed8``, ``open8``, ``wide14``), a folder of CSV files with the header
+        A built-in set (``konig8``, ``open8``, ``wide14``), a folder of CSV files with the header
         ``wavelength_nm,absorption,emission``, or a list of `Dye` in ring order.
     accounting
         What is conserved when light is given back: ``energy`` or ``photon``.

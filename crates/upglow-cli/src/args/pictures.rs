@@ -1,81 +1,95 @@
 //! What was typed about pictures.
 
-use std::num::NonZeroUsize;
 use std::path::PathBuf;
-use std::str::FromStr;
 
-use upglow_color::Adaptation;
+use upglow_color::{Adaptation, Grid, RgbSpace, choices};
+use upglow_image::{Assumed, Encoding, Repair, Sample};
+use upglow_terminal::{Threads, word};
 
-use super::{named, threads, whole};
+use super::values::{bands, position, rgb_space};
 
 /// What the numbers of a picture mean, where its file does not say.
 #[derive(Clone, Debug, clap::Args)]
+#[command(next_help_heading = "Pictures")]
 pub(crate) struct PictureArgs {
-    /// RGB space of pictures that do not name theirs: acescg, aces2065-1, rec2020, p3-d65, srgb,
-    /// prophoto, adobe-rgb, xyz, or eight numbers Rx,Ry,Gx,Gy,Bx,By,Wx,Wy
-    #[arg(long, help_heading = "Pictures")]
-    pub(crate) space: Option<String>,
-    /// How pictures that do not say so store light: linear, srgb, or a gamma such as 2.2
-    #[arg(long, value_name = "NAME|GAMMA", help_heading = "Pictures")]
-    pub(crate) encoding: Option<String>,
+    /// RGB space of pictures that do not state theirs: acescg, aces2065-1, rec2020, p3-d65, srgb,
+    /// prophoto, adobe-rgb, xyz, or eight chromaticities Rx,Ry,Gx,Gy,Bx,By,Wx,Wy
+    #[arg(long, value_parser = rgb_space)]
+    space: Option<RgbSpace>,
+    /// Transfer curve of pictures that do not state theirs: linear, srgb, or a gamma such as 2.2
+    #[arg(long, value_name = "NAME|GAMMA")]
+    encoding: Option<Encoding>,
+}
+
+impl PictureArgs {
+    pub(crate) fn assumed(&self) -> Assumed {
+        Assumed { space: self.space.clone(), encoding: self.encoding }
+    }
 }
 
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct BakeArgs {
     /// Cube made by `upglow build`
     pub(crate) cube: PathBuf,
-    /// Pictures, or folders of them: EXR, TIFF or PNG
+    /// Pictures, or folders of pictures: EXR, TIFF or PNG
     #[arg(required = true, value_name = "IN")]
     pub(crate) inputs: Vec<PathBuf>,
-    /// File to write, or folder for the files of several pictures; made if it is not there
+    /// EXR file to write for one picture, or folder for several; created if it does not exist
     #[arg(long, short, value_name = "OUT")]
     pub(crate) output: PathBuf,
-    /// material (parameters of one material a texel), spectral (reflectance in bands, and
-    /// re-radiation between them) or radiance (color under --light)
-    #[arg(long = "as", default_value = "material", value_name = "NAME")]
+    /// What to write: material stores the parameters of one material per texel; spectral stores
+    /// reflectance in bands and re-radiation between them; radiance stores the color under --light
+    #[arg(long = "as", default_value_t = BakeForm::Material, value_name = "NAME", value_parser = word::<BakeForm>())]
     pub(crate) form: BakeForm,
 
     #[command(flatten)]
     pub(crate) picture: PictureArgs,
-    /// What to do with texels outside 0 to 1, negative or no numbers: clip, scale or nearest
-    /// [default: refuse them]
-    #[arg(long, value_name = "NAME", help_heading = "Pictures")]
-    pub(crate) repair: Option<String>,
+    /// What to do with texels outside 0 to 1 or not finite: clip limits each channel, scale divides
+    /// the picture by its maximum, nearest moves each color to the nearest one that a material can
+    /// show [default: refuse the picture]
+    #[arg(long, value_name = "NAME", value_parser = word::<Repair>(), help_heading = "Pictures")]
+    pub(crate) repair: Option<Repair>,
 
-    /// Interpolate parameters without a solver: faster, and less exact (material only)
-    #[arg(long, help_heading = "Output")]
+    #[command(flatten)]
+    pub(crate) result: ResultArgs,
+    #[command(flatten)]
+    pub(crate) threads: Threads,
+}
+
+#[derive(Clone, Debug, clap::Args)]
+#[command(next_help_heading = "Output")]
+pub(crate) struct ResultArgs {
+    /// Interpolate the parameters without a solver, which is faster and less exact (material only)
+    #[arg(long)]
     pub(crate) fast: bool,
-    /// Wavelengths FIRST:LAST:STEP in nm (spectral only) [default: 380:780:10]
-    #[arg(long, value_name = "NM:NM:NM", help_heading = "Output")]
-    pub(crate) bands: Option<String>,
-    /// Store one map for each dye, and the dyes' curves once, instead of a channel for each pair of
+    /// Centers of the bands, FIRST:LAST:STEP in nm (spectral only) [default: 380:780:10]
+    #[arg(long, value_name = "NM:NM:NM", value_parser = bands)]
+    pub(crate) bands: Option<Grid>,
+    /// Store one map per dye and the spectra of the dyes once, instead of one channel per pair of
     /// bands (spectral only)
-    #[arg(long, help_heading = "Output")]
+    #[arg(long)]
     pub(crate) compact: bool,
-    /// Light to show colors under: D65, D60, D55, D50, A, E, or a CSV file with the header
-    /// `wavelength_nm,power` (radiance only)
-    #[arg(long, value_name = "NAME|FILE", help_heading = "Output")]
+    /// Light under which colors are computed: D65, D60, D55, D50, A, E, or a CSV file with the
+    /// header `wavelength_nm,power` (radiance only)
+    #[arg(long, value_name = "NAME|FILE")]
     pub(crate) light: Option<String>,
-    /// Numbers in the file: half or float
-    #[arg(long, default_value = "half", value_name = "NAME", help_heading = "Output")]
+    /// Number format of the channels: 16-bit half or 32-bit float
+    #[arg(long, default_value_t = SampleName::Half, value_name = "NAME", value_parser = word::<SampleName>())]
     pub(crate) sample: SampleName,
-    /// Threads; the files do not depend on it [default: one for each core]
-    #[arg(long, value_name = "N", value_parser = threads)]
-    pub(crate) threads: Option<NonZeroUsize>,
 }
 
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct CheckArgs {
-    /// Pictures, or folders of them: EXR, TIFF or PNG
+    /// Pictures, or folders of pictures: EXR, TIFF or PNG
     #[arg(required = true, value_name = "IN")]
     pub(crate) inputs: Vec<PathBuf>,
-    /// Write a page with pictures to this file
+    /// Write an illustrated report on all pictures to this file
     #[arg(long, short, value_name = "REPORT.html")]
     pub(crate) output: Option<PathBuf>,
     /// Write the heat map of a single picture to this file
     #[arg(long, value_name = "FILE.png")]
     pub(crate) heat_map: Option<PathBuf>,
-    /// Also say how close this cube's materials come; its light and adaptation are used
+    /// Also report how close the materials of this cube come; its light and adaptation are used
     #[arg(long, value_name = "FILE")]
     pub(crate) cube: Option<PathBuf>,
     #[command(flatten)]
@@ -84,20 +98,19 @@ pub(crate) struct CheckArgs {
     /// [default: D65]
     #[arg(long, value_name = "NAME|FILE", conflicts_with = "cube")]
     pub(crate) illuminant: Option<String>,
-    /// Chromatic adaptation from the white of the space to that of the light: bradford or none
+    /// Chromatic adaptation from the white of the RGB space to that of the light
     /// [default: bradford]
-    #[arg(long, value_name = "NAME", conflicts_with = "cube")]
+    #[arg(long, value_name = "NAME", value_parser = word::<Adaptation>(), conflicts_with = "cube")]
     pub(crate) adapt: Option<Adaptation>,
-    /// Threads; the result does not depend on it [default: one for each core]
-    #[arg(long, value_name = "N", value_parser = threads)]
-    pub(crate) threads: Option<NonZeroUsize>,
+    #[command(flatten)]
+    pub(crate) threads: Threads,
 }
 
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct ReadArgs {
-    /// Spectral, bispectral or compact EXR
+    /// Baked material, or spectral, bispectral or compact EXR
     pub(crate) file: PathBuf,
-    /// Column and row of the texel, from the upper left, first 0,0
+    /// Column and row of the texel; 0,0 is the upper left
     #[arg(long, value_name = "X,Y", value_parser = position, allow_hyphen_values = true)]
     pub(crate) at: [usize; 2],
 }
@@ -107,19 +120,19 @@ pub(crate) struct LintArgs {
     /// EXR files
     #[arg(required = true, value_name = "FILE")]
     pub(crate) files: Vec<PathBuf>,
-    /// Look at the channels only, not at the texels
+    /// Check the header only, not the texels
     #[arg(long)]
     pub(crate) names_only: bool,
 }
 
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct ExamplesArgs {
-    /// Folder for the EXR files; made if it is not there
+    /// Folder for the EXR files; created if it does not exist
     #[arg(long, default_value = "examples", value_name = "FOLDER")]
     pub(crate) out: PathBuf,
 }
 
-/// What becomes of a picture.
+/// What is written for a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum BakeForm {
     Material,
@@ -127,44 +140,22 @@ pub(crate) enum BakeForm {
     Radiance,
 }
 
-impl BakeForm {
-    const ALL: [Self; 3] = [Self::Material, Self::Spectral, Self::Radiance];
+choices!(BakeForm, "form", Material = "material", Spectral = "spectral", Radiance = "radiance",);
 
-    /// The word that is typed.
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::Material => "material",
-            Self::Spectral => "spectral",
-            Self::Radiance => "radiance",
-        }
-    }
-}
-
-impl FromStr for BakeForm {
-    type Err = String;
-
-    fn from_str(name: &str) -> Result<Self, Self::Err> {
-        named("form", &Self::ALL.map(|form| (form.name(), form)), name)
-    }
-}
-
-/// The kinds of number in a file.
+/// The number formats of channels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum SampleName {
     Half,
     Float,
 }
 
-impl FromStr for SampleName {
-    type Err = String;
+choices!(SampleName, "kind of number", Half = "half", Float = "float");
 
-    fn from_str(name: &str) -> Result<Self, Self::Err> {
-        named("kind of number", &[("half", Self::Half), ("float", Self::Float)], name)
+impl From<SampleName> for Sample {
+    fn from(name: SampleName) -> Self {
+        match name {
+            SampleName::Half => Self::Half,
+            SampleName::Float => Self::Float,
+        }
     }
-}
-
-fn position(text: &str) -> Result<[usize; 2], String> {
-    let expected = "two whole numbers X,Y";
-    let (x, y) = text.split_once(',').ok_or_else(|| format!("{text:?}, expected {expected}"))?;
-    Ok([whole(x.trim(), expected)?, whole(y.trim(), expected)?])
 }

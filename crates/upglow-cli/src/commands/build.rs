@@ -4,52 +4,47 @@ use std::time::Instant;
 
 use serde::Serialize;
 use upglow::{Model, QuantumYield};
-use upglow_fit::{BuildError, Watch, build_cube};
-use upglow_terminal::{Bar, Failure, on_threads};
+use upglow_fit::{BuildError, CubeSummary, build_cube};
+use upglow_terminal::{Console, Failure, Report, check_stopped};
 
-use super::summary::SummaryReport;
 use crate::args::BuildArgs;
 use crate::files;
-use crate::output::{Format, Lines, Report, warn};
+use crate::output::{Lines, warn};
 use crate::plan::BuildPlan;
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Debug, Serialize)]
 struct BuildReport {
     file: String,
     bytes: u64,
     resolution: usize,
     model: &'static str,
     time_s: f64,
-    summary: SummaryReport,
+    summary: CubeSummary,
 }
 
-pub(crate) fn run(args: &BuildArgs, format: Format, quiet: bool) -> Result<(), Failure> {
-    let plan = BuildPlan::new(args)?;
-    warn_of_unpublished_yields(&plan.model);
+pub(crate) fn run(args: &BuildArgs, console: &Console) -> Result<(), Failure> {
+    let BuildPlan { contract, model, options } = BuildPlan::new(args)?;
+    let resolution = args.fit.resolution;
+    warn_of_unpublished_yields(&model);
     let start = Instant::now();
-    let bar = Bar::start(quiet);
-    let built = on_threads(plan.threads, || {
-        build_cube(&plan.contract, &plan.model, plan.options, plan.resolution, &bar)
-    })?;
-    bar.finish();
+    let built = console
+        .work(args.fit.threads, |bar| build_cube(&contract, &model, options, resolution, bar))?;
     let cube = built.map_err(|error| match error {
         BuildError::Stopped => Failure::Stopped,
         BuildError::Options(error) => Failure::option("--slope-max-per-nm", error),
         BuildError::Cube(error) => Failure::option("--resolution", error),
         error => Failure::input("build", error),
     })?;
-    let bytes = cube.to_bytes().map_err(|error| Failure::file(&plan.output, error))?;
-    if bar.stopped() {
-        return Err(Failure::Stopped);
-    }
-    files::write(&plan.output, &bytes)?;
-    format.print(&BuildReport {
-        file: plan.output.display().to_string(),
+    let bytes = cube.to_bytes().map_err(|error| Failure::file(&args.output, error))?;
+    check_stopped()?;
+    files::write(&args.output, &bytes)?;
+    console.print(&BuildReport {
+        file: args.output.display().to_string(),
         bytes: bytes.len() as u64,
-        resolution: plan.resolution,
-        model: plan.model.name(),
+        resolution,
+        model: model.name(),
         time_s: start.elapsed().as_secs_f64(),
-        summary: SummaryReport::of(&cube),
+        summary: CubeSummary::of(&cube),
     })
 }
 
@@ -66,10 +61,10 @@ fn warn_of_unpublished_yields(model: &Model) {
 impl Report for BuildReport {
     fn text(&self) -> String {
         let mut lines = Lines::default();
-        self.summary.add_to(&mut lines);
         lines
+            .add_summary(&self.summary)
             .add("time", format_args!("{:.1} s", self.time_s))
-            .add("file", format_args!("{}, {}", self.file, files::size(self.bytes)));
+            .add_file("file", &self.file, self.bytes);
         lines.to_string()
     }
 }

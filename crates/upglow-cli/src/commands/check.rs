@@ -4,30 +4,28 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use upglow::Cube;
-use upglow_color::Contract;
-use upglow_color::StandingKind;
-use upglow_fit::Watch;
+use upglow_color::{Contract, StandingKind};
+use upglow_fit::{Progress, Watch};
 use upglow_image::{
-    Assumed, CheckReport, CheckedPicture, Counts, Flaw, Judge, LinearPicture, Located, WorstTexel,
-    check_page,
+    CheckReport, CheckedPicture, CubeOpinion, Judge, LinearPicture, Located, WorstTexel, check_page,
 };
-use upglow_terminal::{Bar, Failure, on_threads};
+use upglow_terminal::{Bar, Console, Failure, Report, check_stopped};
 
 use super::bake::picture_failure;
 use crate::args::CheckArgs;
-use crate::output::{Format, Lines, Report};
+use crate::output::Lines;
 use crate::{files, pictures, plan};
 
 /// Rows that are read at a time: enough to keep every core busy.
 const BAND_ROWS: usize = 64;
 
-#[derive(Clone, Debug, Serialize)]
-struct PictureReport {
-    file: String,
+#[derive(Debug, Serialize)]
+struct PictureReport<'a> {
+    file: &'a str,
     width: usize,
     height: usize,
-    rgb_space: String,
-    illuminant: String,
+    rgb_space: &'a str,
+    illuminant: &'a str,
     texels: u64,
     shown_by_reflectance: f64,
     needs_fluorescence: f64,
@@ -37,25 +35,16 @@ struct PictureReport {
     negative: u64,
     not_a_number: u64,
     infinite: u64,
-    /// The first texels of each flaw.
-    flaws: Vec<FlawReport>,
+    /// The first texels of each flaw. JSON has `null` for what it has no number for.
+    flaws: &'a [Located],
     worst: Vec<WorstReport>,
-    cube: Option<CubeReport>,
+    cube: Option<CubeReport<'a>>,
     heat_map: Option<String>,
     /// The page that all pictures are on.
     page: Option<String>,
 }
 
-#[derive(Clone, Debug, Serialize)]
-struct FlawReport {
-    flaw: &'static str,
-    x: usize,
-    y: usize,
-    /// `null` stands for what JSON has no number for.
-    rgb: [f32; 3],
-}
-
-#[derive(Clone, Debug, Serialize)]
+#[derive(Debug, Serialize)]
 struct WorstReport {
     x: usize,
     y: usize,
@@ -67,81 +56,53 @@ struct WorstReport {
     material_de2000: f64,
 }
 
-#[derive(Clone, Debug, Serialize)]
-struct CubeReport {
-    file: String,
-    within_one: f64,
-    within_two: f64,
-    mean_de2000: f64,
-    greatest_de2000: f64,
+#[derive(Debug, Serialize)]
+struct CubeReport<'a> {
+    file: &'a str,
+    #[serde(flatten)]
+    opinion: CubeOpinion,
 }
 
-pub(crate) fn run(args: &CheckArgs, format: Format, quiet: bool) -> Result<(), Failure> {
+pub(crate) fn run(args: &CheckArgs, console: &Console) -> Result<(), Failure> {
     let inputs = pictures::find(&args.inputs)?;
     check_outputs(args, &inputs)?;
-    let assumed = pictures::assumed(&args.picture)?;
     let cube = args.cube.as_deref().map(files::read_cube).transpose()?;
     let contract = contract(args, cube.as_ref())?;
-    let bar = Bar::start(quiet);
     let mut judges = Judges { contract: &contract, cube: cube.as_ref(), known: Vec::new() };
     let mut found = Vec::new();
     for input in &inputs {
-        let checked = on_threads(args.threads, || check(input, &assumed, &mut judges, &bar))?;
-        bar.finish();
-        found.push(checked?);
+        found.push(console.work(args.threads, |bar| check(input, args, &mut judges, bar))??);
     }
     let names: Vec<String> = inputs.iter().map(|input| input.display().to_string()).collect();
     let cube_name = args.cube.as_ref().map(|path| path.display().to_string());
+    let light = contract.illuminant.name();
+    let checked = names.iter().zip(&found).map(|(name, (space, report))| CheckedPicture {
+        name,
+        space,
+        light,
+        cube: cube_name.as_deref(),
+        report,
+    });
+    let checked: Vec<CheckedPicture<'_>> = checked.collect();
     if let Some(output) = &args.output {
-        let light = contract.illuminant.name();
-        let pictures = names.iter().zip(&found).map(|(name, (space, report))| CheckedPicture {
-            name,
-            space,
-            light,
-            cube: cube_name.as_deref(),
-            report,
-        });
-        let page = check_page(&pictures.collect::<Vec<_>>());
-        files::write(output, page.as_bytes())?;
+        files::write(output, check_page(&checked).as_bytes())?;
     }
     if let (Some(path), [(_, report)]) = (&args.heat_map, &found[..]) {
         files::write(path, &report.heat.to_png())?;
     }
-    let light = contract.illuminant.name();
-    for (number, (name, (space, report))) in names.iter().zip(&found).enumerate() {
-        format.separate(number)?;
-        let shown = |path: &Option<PathBuf>| path.as_ref().map(|path| path.display().to_string());
-        format.print(&PictureReport {
-            heat_map: shown(&args.heat_map),
-            page: shown(&args.output),
-            ..PictureReport::new(name, space, light, cube_name.as_deref(), report)
-        })?;
-    }
-    Ok(())
+    checked.iter().try_for_each(|picture| console.print(&PictureReport::new(picture, args)))
 }
 
 fn check_outputs(args: &CheckArgs, inputs: &[PathBuf]) -> Result<(), Failure> {
     if args.heat_map.is_some() && inputs.len() != 1 {
-        let pictures = inputs.len();
-        return Err(Failure::option(
-            "--heat-map",
-            format_args!(
-                "given with {pictures} pictures, expected one; --output has all heat maps"
-            ),
-        ));
+        let message = format!(
+            "given with {} pictures, expected one; --output has all heat maps",
+            inputs.len()
+        );
+        return Err(Failure::option("--heat-map", message));
     }
-    for output in args.output.iter().chain(&args.heat_map) {
-        files::check_output(output)?;
-        if let Some(input) = inputs.iter().find(|input| files::is_same(input, output)) {
-            let input = input.display();
-            let message = format_args!("the picture {input} itself, expected another file");
-            return Err(Failure::file(output, message));
-        }
-        if let Some(cube) = &args.cube {
-            files::check_distinct(cube, output)?;
-        }
-    }
-    Ok(())
+    let mut outputs = args.output.iter().chain(&args.heat_map);
+    outputs.try_for_each(|output| files::check_output_of(output, args.cube.as_deref(), inputs))
 }
 
 /// The light and adaptation; the RGB space is each picture's own, or the cube's.
@@ -153,8 +114,7 @@ fn contract(args: &CheckArgs, cube: Option<&Cube>) -> Result<Contract, Failure> 
     if let Some(adaptation) = args.adapt {
         contract.adaptation = adaptation;
     }
-    plan::check(&contract)?;
-    Ok(contract)
+    plan::checked(contract)
 }
 
 /// A judge for each RGB space: what one has found out serves the next picture too.
@@ -191,80 +151,61 @@ impl Judges<'_> {
 /// What one picture asks for, and the name of the RGB space that it was judged in.
 fn check(
     input: &Path,
-    assumed: &Assumed,
+    args: &CheckArgs,
     judges: &mut Judges<'_>,
     bar: &Bar,
 ) -> Result<(String, CheckReport), Failure> {
-    let open = LinearPicture::open(input, assumed);
-    let mut picture = open.map_err(|error| picture_failure(&error, input))?;
+    let open = LinearPicture::open(input, &args.picture.assumed());
+    let mut picture = open.map_err(|error| picture_failure(error, input))?;
     let (contract, judge) = judges.of(&picture)?;
     picture.convert_to(contract);
     let [width, height] = picture.picture().size();
-    let faulty = |error: &dyn std::fmt::Display| Failure::file(input, error);
-    let mut checker = judge.checker(width, height).map_err(|error| faulty(&error))?;
-    while let Some(band) = picture.read_band(BAND_ROWS).map_err(|error| faulty(&error))? {
-        if bar.stopped() {
-            return Err(Failure::Stopped);
-        }
-        checker.add(band.first_row, &band.rgb).map_err(|error| faulty(&error))?;
+    let faulty = |error| Failure::file(input, error);
+    let mut checker = judge.checker(width, height).map_err(faulty)?;
+    let unread = |error| Failure::file(input, error);
+    while let Some(band) = picture.read_band(BAND_ROWS).map_err(unread)? {
+        check_stopped()?;
+        checker.add(band.first_row, &band.rgb).map_err(faulty)?;
         let done = band.first_row + band.rows();
-        bar.progress(upglow_fit::Progress { stage: "checking", done, total: height });
+        bar.progress(Progress { stage: "checking", done, total: height });
     }
-    let report = checker.finish().map_err(|error| faulty(&error))?;
+    let report = checker.finish().map_err(faulty)?;
     Ok((contract.space.name().to_owned(), report))
 }
 
-impl PictureReport {
-    fn new(file: &str, space: &str, light: &str, cube: Option<&str>, report: &CheckReport) -> Self {
-        let Counts { texels, .. } = report.counts;
-        let share = |count: u64| count as f64 / texels as f64;
-        let counts = &report.counts;
-        let cube = report.cube.zip(cube).map(|(opinion, file)| CubeReport {
-            file: file.into(),
-            within_one: opinion.within_one,
-            within_two: opinion.within_two,
-            mean_de2000: opinion.mean,
-            greatest_de2000: opinion.greatest,
-        });
+impl<'a> PictureReport<'a> {
+    fn new(picture: &CheckedPicture<'a>, args: &CheckArgs) -> Self {
+        let report = picture.report;
+        let counts = report.counts;
+        let share = |count: u64| count as f64 / counts.texels as f64;
+        let shown = |path: &Option<PathBuf>| path.as_ref().map(|path| path.display().to_string());
+        let opinion = report.cube.zip(picture.cube);
         Self {
-            file: file.into(),
+            file: picture.name,
             width: report.width,
             height: report.height,
-            rgb_space: space.into(),
-            illuminant: light.into(),
-            texels,
+            rgb_space: picture.space,
+            illuminant: picture.light,
+            texels: counts.texels,
             shown_by_reflectance: share(counts.reflectance),
             needs_fluorescence: share(counts.needs_fluorescence),
             shown_by_nothing: share(counts.unreachable),
             no_color: counts.no_color,
-            above_one: counts.of(Flaw::AboveOne),
-            negative: counts.of(Flaw::Negative),
-            not_a_number: counts.of(Flaw::NotANumber),
-            infinite: counts.of(Flaw::Infinite),
-            flaws: report.located.iter().map(FlawReport::new).collect(),
-            worst: report.worst.iter().map(WorstReport::new).collect(),
-            cube,
-            heat_map: None,
-            page: None,
+            above_one: counts.above_one,
+            negative: counts.negative,
+            not_a_number: counts.not_a_number,
+            infinite: counts.infinite,
+            flaws: &report.located,
+            worst: report.worst.iter().map(WorstReport::from).collect(),
+            cube: opinion.map(|(opinion, file)| CubeReport { file, opinion }),
+            heat_map: shown(&args.heat_map),
+            page: shown(&args.output),
         }
     }
 }
 
-impl FlawReport {
-    fn new(located: &Located) -> Self {
-        let Located { flaw, x, y, rgb } = *located;
-        let flaw = match flaw {
-            Flaw::AboveOne => "above 1",
-            Flaw::Negative => "negative",
-            Flaw::NotANumber => "no number",
-            Flaw::Infinite => "infinite",
-        };
-        Self { flaw, x, y, rgb }
-    }
-}
-
-impl WorstReport {
-    fn new(texel: &WorstTexel) -> Self {
+impl From<&WorstTexel> for WorstReport {
+    fn from(texel: &WorstTexel) -> Self {
         Self {
             x: texel.x,
             y: texel.y,
@@ -285,7 +226,7 @@ fn rgb_text([r, g, b]: [f32; 3]) -> String {
     format!("{r:.4}, {g:.4}, {b:.4}")
 }
 
-impl Report for PictureReport {
+impl Report for PictureReport<'_> {
     fn text(&self) -> String {
         let percent = |share: f64| format!("{:.2} %", 100.0 * share);
         let mut lines = Lines::default();
@@ -295,23 +236,19 @@ impl Report for PictureReport {
             .add("reflectance shows", percent(self.shown_by_reflectance))
             .add("fluorescence needed", percent(self.needs_fluorescence))
             .add("nothing shows", percent(self.shown_by_nothing));
-        if self.no_color > 0 {
-            lines.add("no colors", format_args!("{} texels", self.no_color));
-        }
-        let flaws = [
+        let counts = [
+            ("no colors", self.no_color),
             ("above 1", self.above_one),
             ("negative", self.negative),
             ("not a number", self.not_a_number),
             ("infinite", self.infinite),
         ];
-        for (name, count) in flaws.into_iter().filter(|(_, count)| *count > 0) {
+        for (name, count) in counts.into_iter().filter(|(_, count)| *count > 0) {
             lines.add(name, format_args!("{count} texels"));
         }
-        for (i, flaw) in self.flaws.iter().enumerate() {
+        for (i, Located { flaw, x, y, rgb }) in self.flaws.iter().enumerate() {
             let name = if i == 0 { "at" } else { "" };
-            let rgb = rgb_text(flaw.rgb);
-            let FlawReport { flaw, x, y, .. } = flaw;
-            lines.add(name, format_args!("{x},{y} ({rgb}): {flaw}"));
+            lines.add(name, format_args!("{x},{y} ({}): {flaw}", rgb_text(*rgb)));
         }
         for (i, worst) in self.worst.iter().enumerate() {
             let name = if i == 0 { "worst" } else { "" };
@@ -326,14 +263,15 @@ impl Report for PictureReport {
                 ),
             );
         }
-        if let Some(cube) = &self.cube {
-            let CubeReport { file, mean_de2000, greatest_de2000, .. } = cube;
+        if let Some(CubeReport { file, opinion }) = &self.cube {
             lines.add(
                 "with the cube",
                 format_args!(
-                    "{file}: {} within 1 ΔE00, {} within 2; mean {mean_de2000:.2}, greatest {greatest_de2000:.2}",
-                    percent(cube.within_one),
-                    percent(cube.within_two)
+                    "{file}: {} within 1 ΔE00, {} within 2; mean {:.2}, greatest {:.2}",
+                    percent(opinion.within_one),
+                    percent(opinion.within_two),
+                    opinion.mean,
+                    opinion.greatest,
                 ),
             );
         }

@@ -2,22 +2,18 @@
 
 use std::io::{IsTerminal, stdout};
 
-use upglow::{Cube, Mixture, ModelOnGrid};
+use upglow::{Cube, Interpolation, Mixture, ModelOnGrid};
 use upglow_color::{
     Adaptation, ColorSolids, Colorimetry, Contract, Grid, Illuminant, LinearRgb, Metric, Nearest,
     RgbSpace, StandingKind, Xyz,
 };
 use upglow_fit::{FitOptions, Fitter, Method};
-use upglow_terminal::Failure;
+use upglow_terminal::{Console, Failure};
 
-use super::color_report::{
-    ColorReport, CurvesReport, Drawing, LightReport, PartReport, StandingReport,
-};
+use super::color_report::{ColorReport, LightReport, PartReport, StandingReport};
 use crate::args::ColorArgs;
-use crate::files;
-use crate::output::Format;
-use crate::plan::{ColorPlan, Way};
 use crate::plot::{Curves, Figure, Swatch, svg, terminal};
+use crate::{files, plan};
 
 /// The lights that the material is shown under, beside the cube's own.
 const LIGHTS: [&str; 3] = ["D65", "A", "E"];
@@ -26,38 +22,50 @@ const LIGHTS: [&str; 3] = ["D65", "A", "E"];
 const LAMP_PEAK_NM: f64 = 365.0;
 const LAMP_FWHM_NM: f64 = 12.0;
 
-pub(crate) fn run(args: &ColorArgs, format: Format) -> Result<(), Failure> {
-    let plan = ColorPlan::new(args)?;
-    let cube = files::read_cube(&plan.file)?;
-    let mixture = material(&plan, &cube)?;
-    let shown = Shown::new(&cube, &mixture, plan.rgb);
-    if let Some(path) = &plan.plot {
-        files::write(path, svg::draw(&shown.figure(&plan)).as_bytes())?;
+pub(crate) fn run(args: &ColorArgs, console: &Console) -> Result<(), Failure> {
+    let rgb = plan::color(args)?;
+    if let Some(plot) = &args.plot {
+        files::check_output_of(plot, Some(&args.file), [])?;
     }
-    format.print(&shown.report(&plan, format))
+    let cube = files::read_cube(&args.file)?;
+    let interpolation = (!args.direct).then(|| args.interpolation.unwrap_or_default());
+    let mixture = match interpolation {
+        Some(interpolation) => cube.lookup(rgb, interpolation).map_err(no_material)?,
+        None => fitted(rgb, &cube, args)?,
+    };
+    let shown = Shown::new(&cube, &mixture, rgb, interpolation);
+    if let Some(path) = &args.plot {
+        files::write(path, svg::draw(&shown.figure()).as_bytes())?;
+    }
+    let drawing = match stdout().is_terminal() {
+        _ if console.json => None,
+        true => {
+            let colored = std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
+            Some(terminal::draw(&shown.curves, colored))
+        }
+        false => args.plot_terminal.then(|| terminal::draw(&shown.curves, false)),
+    };
+    console.print(&shown.report(args, drawing))
 }
 
-/// The material that the plan asks for.
-fn material<'c>(plan: &ColorPlan, cube: &'c Cube) -> Result<Mixture<'c>, Failure> {
-    let refused = |error| Failure::file(&plan.file, error);
-    match plan.way {
-        Way::Lookup(interpolation) => {
-            cube.lookup(plan.rgb, interpolation).map_err(|error| Failure::input("R G B", error))
-        }
-        Way::Direct => {
-            let record = cube.fit();
-            let options = FitOptions {
-                metric: record.metric.parse::<Metric>().map_err(|e| refused(e.to_string()))?,
-                slope_max_per_nm: record.slope_max_per_nm,
-                sweeps: record.sweeps,
-                method: record.method.parse::<Method>().map_err(|e| refused(e.to_string()))?,
-            };
-            let fitter = Fitter::new(cube.contract(), cube.model(), options)
-                .map_err(|error| refused(error.to_string()))?;
-            let fit = fitter.fit(plan.rgb).map_err(|error| Failure::input("R G B", error))?;
-            Ok(Mixture::of(cube.model(), fit.material()))
-        }
-    }
+fn no_material(error: impl std::error::Error + Send + Sync + 'static) -> Failure {
+    Failure::input("R G B", error)
+}
+
+/// A material fitted to one color as those of the cube's nodes were.
+fn fitted<'c>(rgb: LinearRgb, cube: &'c Cube, args: &ColorArgs) -> Result<Mixture<'c>, Failure> {
+    let record = cube.fit();
+    let unknown = |error| Failure::file(&args.file, error);
+    let options = FitOptions {
+        metric: record.metric.parse::<Metric>().map_err(unknown)?,
+        slope_max_per_nm: record.slope_max_per_nm,
+        sweeps: record.sweeps,
+        method: record.method.parse::<Method>().map_err(unknown)?,
+    };
+    let fitter = Fitter::new(cube.contract(), cube.model(), options)
+        .map_err(|error| Failure::file(&args.file, error))?;
+    let fit = fitter.fit(rgb).map_err(no_material)?;
+    Ok(Mixture::of(cube.model(), fit.material()))
 }
 
 /// A material beside the color that it stands for.
@@ -65,6 +73,8 @@ struct Shown<'a> {
     cube: &'a Cube,
     mixture: &'a Mixture<'a>,
     rgb: LinearRgb,
+    /// `None` for a material that was fitted to this color.
+    interpolation: Option<Interpolation>,
     colorimetry: Colorimetry,
     target: Xyz,
     color: Xyz,
@@ -72,50 +82,45 @@ struct Shown<'a> {
 }
 
 impl<'a> Shown<'a> {
-    fn new(cube: &'a Cube, mixture: &'a Mixture<'a>, rgb: LinearRgb) -> Self {
+    fn new(
+        cube: &'a Cube,
+        mixture: &'a Mixture<'a>,
+        rgb: LinearRgb,
+        interpolation: Option<Interpolation>,
+    ) -> Self {
         let colorimetry = cube.contract().on(Grid::FIT);
         let target = colorimetry.xyz_from_rgb(rgb);
         let color = mixture.color(&ModelOnGrid::new(cube.model(), &colorimetry));
         let curves = Curves::of(mixture, &colorimetry);
-        Self { cube, mixture, rgb, target, color, curves, colorimetry }
+        Self { cube, mixture, rgb, interpolation, target, color, curves, colorimetry }
     }
 
     fn de2000(&self, color: Xyz) -> f64 {
         Metric::De2000.distance(&self.colorimetry, self.target, color)
     }
 
-    fn report(&self, plan: &ColorPlan, format: Format) -> ColorReport {
-        let drawing = match format {
-            Format::Json => None,
-            Format::Text if stdout().is_terminal() => {
-                let colored = std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
-                Some(terminal::draw(&self.curves, colored))
-            }
-            Format::Text => plan.plot_terminal.then(|| terminal::draw(&self.curves, false)),
-        };
+    fn report(&'a self, args: &ColorArgs, drawing: Option<String>) -> ColorReport<'a> {
+        let Contract { space, illuminant, adaptation, .. } = self.cube.contract();
         ColorReport {
-            file: plan.file.display().to_string(),
-            rgb_space: self.cube.contract().space.name().into(),
-            rgb: self.rgb.0,
-            xyz: self.target.0,
-            interpolation: match plan.way {
-                Way::Lookup(interpolation) => Some(interpolation.to_string()),
-                Way::Direct => None,
-            },
+            file: args.file.display().to_string(),
+            rgb_space: space.name(),
+            rgb: self.rgb,
+            xyz: self.target,
+            interpolation: self.interpolation,
             de2000: self.de2000(self.color),
             standing: self.standing(),
-            parts: self
-                .mixture
-                .parts()
-                .map(|part| PartReport::new(part, self.cube.model()))
-                .collect(),
-            illuminant: self.cube.contract().illuminant.name().into(),
-            adaptation: self.cube.contract().adaptation.to_string(),
+            parts: self.parts(),
+            illuminant: illuminant.name(),
+            adaptation: *adaptation,
             lights: self.lights(),
-            plot: plan.plot.as_ref().map(|path| path.display().to_string()),
-            curves: CurvesReport::new(&self.curves),
-            drawing: Drawing(drawing),
+            plot: args.plot.as_ref().map(|path| path.display().to_string()),
+            curves: &self.curves,
+            drawing,
         }
+    }
+
+    fn parts(&self) -> Vec<PartReport<'_>> {
+        self.mixture.parts().map(|part| PartReport::new(part, self.cube.model())).collect()
     }
 
     fn standing(&self) -> StandingReport {
@@ -154,10 +159,10 @@ impl<'a> Shown<'a> {
 
     fn under(&self, name: &str, colorimetry: &Colorimetry) -> LightReport {
         let xyz = self.mixture.color(&ModelOnGrid::new(self.cube.model(), colorimetry));
-        LightReport { name: name.into(), xyz: xyz.0, rgb: colorimetry.rgb_from_xyz(xyz).0 }
+        LightReport { name: name.into(), xyz, rgb: colorimetry.rgb_from_xyz(xyz) }
     }
 
-    fn figure(&self, plan: &ColorPlan) -> Figure<'_> {
+    fn figure(&self) -> Figure<'_> {
         let screen = Contract {
             space: RgbSpace::named("srgb").unwrap_or_default(),
             adaptation: Adaptation::Bradford,
@@ -165,41 +170,30 @@ impl<'a> Shown<'a> {
         };
         let screen = screen.on(Grid::FIT);
         let swatch = |xyz| Swatch::from_linear(screen.rgb_from_xyz(xyz));
-        let way = match plan.way {
-            Way::Lookup(interpolation) => format!("looked up, {interpolation}"),
-            Way::Direct => "fitted directly".into(),
-        };
         Figure {
             curves: &self.curves,
             target: swatch(self.target),
             result: swatch(self.color),
-            caption: self.caption(way),
+            caption: self.caption(),
         }
     }
 
     /// Lines under the swatches of a figure.
-    fn caption(&self, way: String) -> Vec<String> {
+    fn caption(&self) -> Vec<String> {
         let contract = self.cube.contract();
-        let [r, g, b] = self.rgb.0;
+        let LinearRgb([r, g, b]) = self.rgb;
+        let origin = self.interpolation.map(|interpolation| format!("looked up, {interpolation}"));
         let mut lines = vec![
             format!("{} ({r}, {g}, {b})", contract.space.name()),
             format!("under {}, {}", contract.illuminant.name(), contract.observer.name()),
-            way,
+            origin.unwrap_or("fitted directly".into()),
             format!("ΔE00 {:.2}", self.de2000(self.color)),
         ];
-        let fluorescence: Vec<String> = self
-            .mixture
-            .parts()
-            .filter_map(|part| PartReport::new(part, self.cube.model()).fluorescence)
-            .flat_map(|fluorescence| fluorescence.names())
-            .collect();
-        let mut seen = Vec::new();
-        for name in fluorescence {
-            if !seen.contains(&name) {
-                seen.push(name);
+        for name in self.parts().iter().flat_map(PartReport::emitters) {
+            if !lines.contains(&name) {
+                lines.push(name);
             }
         }
-        lines.extend(seen);
         lines
     }
 }

@@ -3,42 +3,42 @@
 use std::fmt::Write as _;
 
 use serde::Serialize;
-use upglow::{Fluorescence, Material, Model, Vertex};
+use upglow::{Features, Fluorescence, Interpolation, Material, Model, Sigmoid, Vertex};
+use upglow_color::{Adaptation, LinearRgb, Xyz};
 use upglow_fit::CubeSummary;
+use upglow_terminal::Report;
 
-use crate::output::{Lines, Report, Side, Table, triple, unsigned_zero};
+use super::material_report::{ReflectanceReport, dye_names};
+use crate::output::{Lines, Side, Table, triple};
 use crate::plot::Curves;
 
 /// Beyond this a miss shows beside the color itself; smaller would cry over what nobody sees.
 const VISIBLE_DE2000: f64 = 1.0;
 
-#[derive(Clone, Debug, Serialize)]
-pub(crate) struct ColorReport {
+#[derive(Debug, Serialize)]
+pub(crate) struct ColorReport<'a> {
     pub(crate) file: String,
-    pub(crate) rgb_space: String,
-    pub(crate) rgb: [f64; 3],
+    pub(crate) rgb_space: &'a str,
+    pub(crate) rgb: LinearRgb,
     /// The color asked for under the cube's illuminant.
-    pub(crate) xyz: [f64; 3],
+    pub(crate) xyz: Xyz,
     /// `None` for a direct fit.
-    pub(crate) interpolation: Option<String>,
+    pub(crate) interpolation: Option<Interpolation>,
     pub(crate) de2000: f64,
     pub(crate) standing: StandingReport,
-    pub(crate) parts: Vec<PartReport>,
-    pub(crate) illuminant: String,
-    pub(crate) adaptation: String,
+    pub(crate) parts: Vec<PartReport<'a>>,
+    pub(crate) illuminant: &'a str,
+    pub(crate) adaptation: Adaptation,
     pub(crate) lights: Vec<LightReport>,
     pub(crate) plot: Option<String>,
-    pub(crate) curves: CurvesReport,
+    pub(crate) curves: &'a Curves,
+    /// The curves drawn in text, where they are wanted.
     #[serde(skip)]
-    pub(crate) drawing: Drawing,
+    pub(crate) drawing: Option<String>,
 }
 
-/// The curves drawn in text, where they are wanted.
-#[derive(Clone, Debug)]
-pub(crate) struct Drawing(pub(crate) Option<String>);
-
 /// The limits of physics around a color.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Debug, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub(crate) enum StandingReport {
     Reflectance,
@@ -47,113 +47,81 @@ pub(crate) enum StandingReport {
 }
 
 /// One material of a mixture.
-#[derive(Clone, Debug, Serialize)]
-pub(crate) struct PartReport {
+#[derive(Debug, Serialize)]
+pub(crate) struct PartReport<'a> {
     weight: f64,
-    c0: f64,
-    c1: f64,
-    c2: f64,
-    /// The greatest |dr/dλ|, 0 for a flat reflectance, 1/nm.
-    steepest_per_nm: f64,
+    #[serde(flatten)]
+    reflectance: ReflectanceReport,
     /// `None` for a flat reflectance, and for one with a straight parabola.
     shift_nm: Option<f64>,
     width_nm: Option<f64>,
     slope_per_nm: Option<f64>,
-    pub(crate) fluorescence: Option<FluorescenceReport>,
+    fluorescence: Option<FluorescenceReport<'a>>,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Debug, Serialize)]
 #[serde(untagged)]
-pub(crate) enum FluorescenceReport {
-    Dyes { dye_a: String, dye_b: String, weight: f64, concentration: f64 },
+enum FluorescenceReport<'a> {
+    Dyes { dye_a: &'a str, dye_b: &'a str, weight: f64, concentration: f64 },
     Analytic { emission_peak_nm: f64, stokes_shift_nm: f64, concentration: f64 },
 }
 
 /// The material's color under one light.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Debug, Serialize)]
 pub(crate) struct LightReport {
     pub(crate) name: String,
-    pub(crate) xyz: [f64; 3],
-    pub(crate) rgb: [f64; 3],
+    pub(crate) xyz: Xyz,
+    pub(crate) rgb: LinearRgb,
 }
 
-/// [`Curves`] as they are printed.
-#[derive(Clone, Debug, Serialize)]
-pub(crate) struct CurvesReport {
-    wavelengths_nm: Vec<f64>,
-    /// (1 − c·a)·r, 0..=1.
-    reflectance: Vec<f64>,
-    /// c·a, 0..=1.
-    absorption: Vec<f64>,
-    /// Under the cube's illuminant, 1 at its peak.
-    emission: Vec<f64>,
-}
-
-impl PartReport {
-    pub(crate) fn new((weight, material): (f64, Material), model: &Model) -> Self {
-        let sigmoid = material.reflectance;
-        let features = sigmoid.to_vertex().and_then(Vertex::to_features);
+impl<'a> PartReport<'a> {
+    pub(crate) fn new((weight, material): (f64, Material), model: &'a Model) -> Self {
+        let Material { reflectance, fluorescence } = material;
+        let features = reflectance.to_vertex().and_then(Vertex::to_features);
+        let feature = |of: fn(Features) -> f64| features.map(of);
         Self {
             weight,
-            c0: unsigned_zero(sigmoid.c0),
-            c1: unsigned_zero(sigmoid.c1),
-            c2: unsigned_zero(sigmoid.c2),
-            steepest_per_nm: sigmoid.steepest_slope_per_nm(),
-            shift_nm: features.map(|f| f.shift_nm),
-            width_nm: features.map(|f| f.width_nm),
-            slope_per_nm: features.map(|f| f.slope_per_nm),
-            fluorescence: FluorescenceReport::new(material.fluorescence, model),
-        }
-    }
-}
-
-impl FluorescenceReport {
-    fn new(fluorescence: Fluorescence, model: &Model) -> Option<Self> {
-        match (fluorescence, model) {
-            (Fluorescence::Dyes { first, weight, concentration }, Model::Dyes(dyes)) => {
-                let name = |dye: usize| dyes.set().dyes().get(dye).map(|dye| dye.name.clone());
-                let dye_b = name(dyes.partner(first))?;
-                Some(Self::Dyes { dye_a: name(first)?, dye_b, weight, concentration })
-            }
-            (
-                Fluorescence::Analytic { emission_peak_nm, stokes_shift_nm, concentration },
-                Model::Analytic(_),
-            ) => Some(Self::Analytic { emission_peak_nm, stokes_shift_nm, concentration }),
-            _ => None,
+            reflectance: reflectance.into(),
+            shift_nm: feature(|f| f.shift_nm),
+            width_nm: feature(|f| f.width_nm),
+            slope_per_nm: feature(|f| f.slope_per_nm),
+            fluorescence: FluorescenceReport::new(fluorescence, model),
         }
     }
 
     /// What fluoresces, for a caption.
-    pub(crate) fn names(self) -> Vec<String> {
-        match self {
-            Self::Dyes { dye_a, dye_b, weight, .. } => {
-                let shares = [(dye_a, 1.0 - weight), (dye_b, weight)];
-                shares
-                    .into_iter()
-                    .filter(|(_, share)| *share > 0.0)
-                    .map(|(name, _)| format!("dye {name}"))
-                    .collect()
+    pub(crate) fn emitters(&self) -> Vec<String> {
+        match &self.fluorescence {
+            None => Vec::new(),
+            Some(FluorescenceReport::Dyes { dye_a, dye_b, weight, .. }) => {
+                let shares = [(dye_a, 1.0 - weight), (dye_b, *weight)];
+                let used = shares.into_iter().filter(|(_, share)| *share > 0.0);
+                used.map(|(name, _)| format!("dye {name}")).collect()
             }
-            Self::Analytic { emission_peak_nm, .. } => {
+            Some(FluorescenceReport::Analytic { emission_peak_nm, .. }) => {
                 vec![format!("emission peak {emission_peak_nm:.0} nm")]
             }
         }
     }
 }
 
-impl CurvesReport {
-    pub(crate) fn new(curves: &Curves) -> Self {
-        Self {
-            wavelengths_nm: curves.wavelengths_nm.clone(),
-            reflectance: curves.reflectance.clone(),
-            absorption: curves.absorption.clone(),
-            emission: curves.emission.clone(),
+impl<'a> FluorescenceReport<'a> {
+    fn new(fluorescence: Fluorescence, model: &'a Model) -> Option<Self> {
+        match fluorescence {
+            Fluorescence::Dyes { weight, concentration, .. } => {
+                let [dye_a, dye_b] = dye_names(fluorescence, model)?;
+                Some(Self::Dyes { dye_a, dye_b, weight, concentration })
+            }
+            Fluorescence::Analytic { emission_peak_nm, stokes_shift_nm, concentration } => {
+                Some(Self::Analytic { emission_peak_nm, stokes_shift_nm, concentration })
+            }
+            _ => None,
         }
     }
 }
 
 impl StandingReport {
-    fn text(self) -> String {
+    fn text(&self) -> String {
         match self {
             Self::Reflectance => "some reflectance shows it".into(),
             Self::NeedsFluorescence { reflectance_distance_xyz, reflectance_de2000 } => format!(
@@ -166,10 +134,10 @@ impl StandingReport {
     }
 }
 
-impl Report for ColorReport {
+impl Report for ColorReport<'_> {
     fn text(&self) -> String {
         let mut text = self.head();
-        if let Drawing(Some(drawing)) = &self.drawing {
+        if let Some(drawing) = &self.drawing {
             let _ = write!(text, "\n{drawing}");
         }
         let _ = write!(text, "\n{}", self.shapes());
@@ -179,9 +147,9 @@ impl Report for ColorReport {
     }
 }
 
-impl ColorReport {
+impl ColorReport<'_> {
     fn head(&self) -> String {
-        let [r, g, b] = self.rgb;
+        let LinearRgb([r, g, b]) = self.rgb;
         let material = match (&self.interpolation, self.parts.len()) {
             (None, _) => "fitted directly".into(),
             (Some(interpolation), 1) => format!("looked up, {interpolation}, one material"),
@@ -210,7 +178,8 @@ impl ColorReport {
         let head = ["part", "weight", "shift nm", "width nm", "slope /nm", "c0", "c1", "c2"];
         let mut table = Table::new(head.map(|name| (name, Side::Right)));
         for (number, part) in (1..).zip(&self.parts) {
-            let without = if part.steepest_per_nm == 0.0 { "flat" } else { "straight" };
+            let Sigmoid { c0, c1, c2 } = part.reflectance.coefficients;
+            let without = if part.reflectance.steepest_per_nm == 0.0 { "flat" } else { "straight" };
             let optional = |value: Option<f64>, decimals: usize| {
                 value.map_or(without.into(), |v| format!("{v:.decimals$}"))
             };
@@ -220,9 +189,9 @@ impl ColorReport {
                 optional(part.shift_nm, 2),
                 optional(part.width_nm, 2),
                 optional(part.slope_per_nm, 6),
-                format!("{:.5e}", part.c0),
-                format!("{:.5e}", part.c1),
-                format!("{:.5e}", part.c2),
+                format!("{c0:.5e}"),
+                format!("{c1:.5e}"),
+                format!("{c2:.5e}"),
             ]);
         }
         table.to_string()
@@ -253,9 +222,9 @@ impl ColorReport {
                     format!("{number}"),
                     format!("{concentration:.4}"),
                     format!("{:.4}", 1.0 - weight),
-                    dye_a.clone(),
+                    (*dye_a).to_owned(),
                     format!("{weight:.4}"),
-                    dye_b.clone(),
+                    (*dye_b).to_owned(),
                 ]);
             }
         }
@@ -291,7 +260,7 @@ impl ColorReport {
         let sides = [Side::Left, Side::Right, Side::Right];
         let mut table = Table::new([0, 1, 2].map(|column| (head[column], sides[column])));
         for light in &self.lights {
-            table.add([light.name.clone(), triple(light.xyz), triple(light.rgb)]);
+            table.add([light.name.clone(), triple(light.xyz.0), triple(light.rgb.0)]);
         }
         let Self { rgb_space: space, illuminant: own, adaptation, .. } = self;
         format!(

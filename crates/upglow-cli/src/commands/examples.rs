@@ -7,11 +7,11 @@ use upglow_color::RgbSpace;
 use upglow_image::{
     EXAMPLE_PICTURES, ExamplePicture, ExrDescription, ExrWriter, WriteExrError, chromaticities,
 };
-use upglow_terminal::Failure;
+use upglow_terminal::{Console, Failure, Report};
 
 use crate::args::ExamplesArgs;
 use crate::files;
-use crate::output::{Format, Lines, Report};
+use crate::output::Lines;
 
 #[derive(Clone, Debug, Serialize)]
 struct ExamplesReport {
@@ -26,7 +26,7 @@ struct PictureReport {
     about: &'static str,
 }
 
-pub(crate) fn run(args: &ExamplesArgs, format: Format) -> Result<(), Failure> {
+pub(crate) fn run(args: &ExamplesArgs, console: &Console) -> Result<(), Failure> {
     files::make_folder(&args.out)?;
     let mut pictures = Vec::new();
     for picture in EXAMPLE_PICTURES {
@@ -36,7 +36,7 @@ pub(crate) fn run(args: &ExamplesArgs, format: Format) -> Result<(), Failure> {
         let file = path.display().to_string();
         pictures.push(PictureReport { file, width, height, about: picture.about });
     }
-    format.print(&ExamplesReport { pictures })
+    console.print(&ExamplesReport { pictures })
 }
 
 fn write(path: &Path, picture: &ExamplePicture) -> Result<(), WriteExrError> {

@@ -4,14 +4,17 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use serde::Serialize;
-use upglow::{Cube, Model, Node, Vertex};
+use upglow::{Cube, Model, Node, Sigmoid, Vertex};
+use upglow_color::Choice;
 use upglow_fit::{BuildError, fit_coefficients};
 use upglow_shader::{Language, Shader, ShaderError};
-use upglow_terminal::{Bar, Failure, on_threads};
+use upglow_terminal::{Console, Failure, Report};
 
+use super::material_report::unsigned_zeros;
 use crate::args::{ExportArgs, ExportFormat};
 use crate::files;
-use crate::output::{Format, Lines, Report, unsigned_zero, warn};
+use crate::output::{Lines, warn};
+use crate::plan::refuse_ignored;
 
 const HEADER: &str = "r,g,b,c0,c1,c2,shift_nm,width_nm,slope_per_nm,dye_a,dye_b,weight,\
                       concentration,emission_peak_nm,stokes_shift_nm,de2000";
@@ -26,15 +29,14 @@ struct ExportReport {
     textures: Vec<String>,
 }
 
-pub(crate) fn run(args: &ExportArgs, format: Format, quiet: bool) -> Result<(), Failure> {
+pub(crate) fn run(args: &ExportArgs, console: &Console) -> Result<(), Failure> {
     let kind = kind(args)?;
-    files::check_output(&args.output)?;
-    files::check_distinct(&args.file, &args.output)?;
+    files::check_output_of(&args.output, Some(&args.file), [])?;
     let cube = files::read_cube(&args.file)?;
     let mut textures = Vec::new();
     let (bytes, nodes) = match kind {
         ExportFormat::Csv => (csv(&cube).into_bytes(), cube.nodes().len()),
-        ExportFormat::Coeff => coeff(args, &cube, quiet)?,
+        ExportFormat::Coeff => coeff(args, &cube, console)?,
         ExportFormat::Shader(language) => {
             let (source, written) = shader(args, &cube, language)?;
             textures = written;
@@ -42,7 +44,7 @@ pub(crate) fn run(args: &ExportArgs, format: Format, quiet: bool) -> Result<(), 
         }
     };
     files::write(&args.output, &bytes)?;
-    format.print(&ExportReport {
+    console.print(&ExportReport {
         file: args.output.display().to_string(),
         format: kind.name(),
         bytes: bytes.len() as u64,
@@ -66,8 +68,7 @@ fn shader(
     let paths: Vec<PathBuf> =
         shader.payload.iter().map(|file| args.output.with_file_name(&file.name)).collect();
     for path in &paths {
-        files::check_output(path)?;
-        files::check_distinct(&args.file, path)?;
+        files::check_output_of(path, Some(&args.file), [])?;
     }
     for (path, file) in paths.iter().zip(&shader.payload) {
         files::write(path, &file.bytes)?;
@@ -79,20 +80,15 @@ fn shader(
 /// The format that was named, or that the output's suffix names.
 fn kind(args: &ExportArgs) -> Result<ExportFormat, Failure> {
     let suffix = args.output.extension().and_then(|suffix| suffix.to_str()).unwrap_or_default();
-    let by_suffix = ExportFormat::ALL.into_iter().find(|format| format.name() == suffix);
+    let by_suffix = ExportFormat::named(suffix).ok();
     let kind = args.format.or(by_suffix).ok_or_else(|| {
         let names: Vec<&str> = ExportFormat::ALL.iter().map(|format| format.name()).collect();
         let names = names.join(", ");
-        let expected = "or an output that ends so";
-        Failure::option("--format", format_args!("not given, expected one of {names}, {expected}"))
+        let message = format!("not given, expected one of {names}, or an output that ends so");
+        Failure::option("--format", message)
     })?;
-    if kind != ExportFormat::Coeff && args.resolution.is_some() {
-        let found = kind.name();
-        return Err(Failure::option(
-            "--resolution",
-            format_args!("given with --format {found}, expected --format coeff"),
-        ));
-    }
+    let resolution = ("--resolution", args.resolution.is_some(), &[ExportFormat::Coeff][..]);
+    refuse_ignored("--format", kind, &[resolution])?;
     Ok(kind)
 }
 
@@ -100,16 +96,14 @@ fn kind(args: &ExportArgs) -> Result<ExportFormat, Failure> {
 const TABLE_RESOLUTION: usize = 64;
 
 /// A table of reflectances for the cube's RGB space, light and slope limit, and its nodes.
-fn coeff(args: &ExportArgs, cube: &Cube, quiet: bool) -> Result<(Vec<u8>, usize), Failure> {
+fn coeff(args: &ExportArgs, cube: &Cube, console: &Console) -> Result<(Vec<u8>, usize), Failure> {
     if !matches!(cube.model(), Model::Reflectance) {
         warn("a table of coefficients has no fluorescence: colors that need it come out duller");
     }
     let resolution = args.resolution.unwrap_or(TABLE_RESOLUTION);
-    let bar = Bar::start(quiet);
-    let fitted = on_threads(args.threads, || {
-        fit_coefficients(cube.contract(), cube.fit().slope_max_per_nm, resolution, &bar)
+    let fitted = console.work(args.threads, |bar| {
+        fit_coefficients(cube.contract(), cube.fit().slope_max_per_nm, resolution, bar)
     })?;
-    bar.finish();
     let table = fitted.map_err(|error| match error {
         BuildError::Stopped => Failure::Stopped,
         error => Failure::file(&args.file, error),
@@ -137,7 +131,7 @@ fn shape_cells(node: &Node) -> String {
         || ",,".to_owned(),
         |f| format!("{},{},{}", f.shift_nm, f.width_nm, f.slope_per_nm),
     );
-    let [c0, c1, c2] = [sigmoid.c0, sigmoid.c1, sigmoid.c2].map(unsigned_zero);
+    let Sigmoid { c0, c1, c2 } = unsigned_zeros(sigmoid);
     format!("{c0},{c1},{c2},{features}")
 }
 
@@ -151,8 +145,7 @@ fn fluorescence_cells(node: &Node, model: &Model) -> [String; 6] {
         Model::Dyes(dyes) if second > 0.0 => {
             let name = |dye: usize| quoted(&dyes.set().dyes()[dye].name);
             let dye = usize::from(node.dye);
-            let names = [name(dye), name(dyes.partner(dye))];
-            let [dye_a, dye_b] = names;
+            let [dye_a, dye_b] = [name(dye), name(dyes.partner(dye))];
             [dye_a, dye_b, number(first), number(second), empty(), empty()]
         }
         Model::Analytic(_) if third > 0.0 => {
@@ -177,7 +170,7 @@ impl Report for ExportReport {
         lines
             .add("format", self.format)
             .add("nodes", self.nodes)
-            .add("file", format_args!("{}, {}", self.file, files::size(self.bytes)));
+            .add_file("file", &self.file, self.bytes);
         for texture in &self.textures {
             lines.add("textures", texture);
         }

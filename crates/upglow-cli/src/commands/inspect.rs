@@ -1,153 +1,81 @@
-//! `upglow inspect`: what a cube is made of.
+//! `upglow inspect`: what a cube contains.
 
 use serde::Serialize;
-use upglow::{AnalyticModel, Cube, DyeModel, Model};
-use upglow_terminal::{Failure, io_message};
+use upglow::{AnalyticModel, Cube, DyeModel, DyeOptions, FitRecord, Model};
+use upglow_color::Contract;
+use upglow_fit::CubeSummary;
+use upglow_terminal::{Console, Failure, Report};
 
 use super::inspect_table;
-use super::summary::SummaryReport;
 use crate::args::InspectArgs;
 use crate::files;
-use crate::output::{Format, Lines, Report, Side, Table};
+use crate::output::{Lines, Side, Table};
 
-#[derive(Clone, Debug, Serialize)]
-struct InspectReport {
+#[derive(Debug, Serialize)]
+struct InspectReport<'a> {
     file: String,
     bytes: u64,
     resolution: usize,
-    contract: ContractReport,
-    model: ModelReport,
-    fit: FitReport,
-    summary: SummaryReport,
+    contract: &'a Contract,
+    model: ModelReport<'a>,
+    fit: &'a FitRecord,
+    summary: CubeSummary,
 }
 
-#[derive(Clone, Debug, Serialize)]
-struct ContractReport {
-    rgb_space: String,
-    /// Chromaticities (x, y) of red, green and blue.
-    primaries_xy: [[f64; 2]; 3],
-    white_xy: [f64; 2],
-    illuminant: String,
-    observer: String,
-    adaptation: String,
-}
-
-#[derive(Clone, Debug, Serialize)]
+#[derive(Debug, Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
-enum ModelReport {
+enum ModelReport<'a> {
     Reflectance,
     Dyes {
-        set: String,
-        dyes: Vec<DyeReport>,
-        mixing: String,
-        accounting: String,
-        quantum_yield: String,
-        optical_density: Option<f64>,
+        set: &'a str,
+        dyes: Vec<DyeReport<'a>>,
+        #[serde(flatten)]
+        options: DyeOptions,
     },
-    Analytic {
-        absorption_fwhm_nm: f64,
-        emission_fwhm_nm: f64,
-        accounting: String,
-        quantum_yield: f64,
-    },
+    Analytic(AnalyticModel),
 }
 
-#[derive(Clone, Debug, Serialize)]
-struct DyeReport {
-    name: String,
+#[derive(Debug, Serialize)]
+struct DyeReport<'a> {
+    name: &'a str,
     /// The yield that the model uses.
     quantum_yield: f64,
     measured_quantum_yield: Option<f64>,
     mean_emission_nm: f64,
-    provenance: String,
+    provenance: &'a str,
 }
 
-#[derive(Clone, Debug, Serialize)]
-struct FitReport {
-    metric: String,
-    slope_max_per_nm: Option<f64>,
-    sweeps: u32,
-    method: String,
-    evaluations: u64,
-}
-
-pub(crate) fn run(args: &InspectArgs, format: Format) -> Result<(), Failure> {
+pub(crate) fn run(args: InspectArgs, console: &Console) -> Result<(), Failure> {
     if inspect_table::is_table(&args.file) {
-        return inspect_table::run(args, format);
+        return inspect_table::run(args, console);
     }
-    let given = [("--space", &args.space), ("--illuminant", &args.illuminant)];
-    if let Some((option, _)) = given.into_iter().find(|(_, value)| value.is_some()) {
-        let message = "given for a cube, which names its own; expected a table of coefficients";
+    let given = [("--space", args.space.is_some()), ("--illuminant", args.illuminant.is_some())];
+    if let Some((option, _)) = given.into_iter().find(|(_, given)| *given) {
+        let message = "given for a cube, which stores its own; expected a coefficient table";
         return Err(Failure::option(option, message));
     }
     let cube = files::read_cube(&args.file)?;
-    let bytes =
-        args.file.metadata().map_err(|error| Failure::file(&args.file, io_message(&error)))?.len();
-    format.print(&InspectReport::new(args.file.display().to_string(), bytes, &cube))
+    console.print(&InspectReport {
+        file: args.file.display().to_string(),
+        bytes: files::bytes(&args.file)?,
+        resolution: cube.resolution(),
+        contract: cube.contract(),
+        model: ModelReport::new(&cube),
+        fit: cube.fit(),
+        summary: CubeSummary::of(&cube),
+    })
 }
 
-impl InspectReport {
-    fn new(file: String, bytes: u64, cube: &Cube) -> Self {
-        let (contract, fit) = (cube.contract(), cube.fit());
-        Self {
-            file,
-            bytes,
-            resolution: cube.resolution(),
-            contract: ContractReport {
-                rgb_space: contract.space.name().into(),
-                primaries_xy: contract.space.primaries(),
-                white_xy: contract.space.white(),
-                illuminant: contract.illuminant.name().into(),
-                observer: contract.observer.name().into(),
-                adaptation: contract.adaptation.to_string(),
-            },
-            model: ModelReport::new(cube.model()),
-            fit: FitReport {
-                metric: fit.metric.clone(),
-                slope_max_per_nm: fit.slope_max_per_nm,
-                sweeps: fit.sweeps,
-                method: fit.method.clone(),
-                evaluations: fit.evaluations,
-            },
-            summary: SummaryReport::of(cube),
-        }
-    }
-}
-
-impl ModelReport {
-    fn new(model: &Model) -> Self {
-        match model {
+impl<'a> ModelReport<'a> {
+    fn new(cube: &'a Cube) -> Self {
+        match cube.model() {
             Model::Reflectance => Self::Reflectance,
-            Model::Dyes(model) => Self::of_dyes(model),
-            Model::Analytic(model) => Self::of_bells(model),
-        }
-    }
-
-    fn of_dyes(model: &DyeModel) -> Self {
-        let options = model.options();
-        let dyes = model.set().dyes().iter().zip(model.curves()).map(|(dye, curves)| DyeReport {
-            name: dye.name.clone(),
-            quantum_yield: curves.quantum_yield,
-            measured_quantum_yield: dye.quantum_yield,
-            mean_emission_nm: curves.mean_emission_nm,
-            provenance: dye.provenance.clone(),
-        });
-        Self::Dyes {
-            set: model.set().name().into(),
-            dyes: dyes.collect(),
-            mixing: options.mixing.to_string(),
-            accounting: options.accounting.to_string(),
-            quantum_yield: options.quantum_yield.to_string(),
-            optical_density: options.optical_density,
-        }
-    }
-
-    fn of_bells(model: &AnalyticModel) -> Self {
-        Self::Analytic {
-            absorption_fwhm_nm: model.absorption_fwhm_nm(),
-            emission_fwhm_nm: model.emission_fwhm_nm(),
-            accounting: model.accounting().to_string(),
-            quantum_yield: model.quantum_yield(),
+            Model::Dyes(model) => Self::Dyes {
+                set: model.set().name(),
+                dyes: DyeReport::of(model),
+                options: model.options(),
+            },
+            Model::Analytic(model) => Self::Analytic(*model),
         }
     }
 
@@ -156,24 +84,25 @@ impl ModelReport {
             Self::Reflectance => {
                 lines.add("model", "reflectance, no fluorescence");
             }
-            Self::Dyes { set, dyes, mixing, accounting, quantum_yield, optical_density } => {
-                let density =
-                    optical_density.map_or("none, a thin solution".into(), |a| a.to_string());
+            Self::Dyes { set, dyes, options } => {
+                let density = options
+                    .optical_density
+                    .map_or("none, a thin solution".into(), |a| a.to_string());
                 lines
                     .add("model", "dyes")
                     .add("dyes", format_args!("{set}, {} in a ring", dyes.len()))
-                    .add("mixing", mixing)
-                    .add("accounting", accounting)
-                    .add("quantum yield", quantum_yield)
+                    .add("mixing", options.mixing)
+                    .add("accounting", options.accounting)
+                    .add("quantum yield", options.quantum_yield)
                     .add("optical density", density);
             }
-            Self::Analytic { absorption_fwhm_nm, emission_fwhm_nm, accounting, quantum_yield } => {
+            Self::Analytic(model) => {
                 lines
                     .add("model", "analytic")
-                    .add("absorption FWHM", format_args!("{absorption_fwhm_nm} nm"))
-                    .add("emission FWHM", format_args!("{emission_fwhm_nm} nm"))
-                    .add("accounting", accounting)
-                    .add("quantum yield", quantum_yield);
+                    .add("absorption FWHM", format_args!("{} nm", model.absorption_fwhm_nm()))
+                    .add("emission FWHM", format_args!("{} nm", model.emission_fwhm_nm()))
+                    .add("accounting", model.accounting())
+                    .add("quantum yield", model.quantum_yield());
             }
         }
     }
@@ -187,47 +116,59 @@ impl ModelReport {
             ("yield measured", Side::Right),
             ("mean emission", Side::Right),
         ]);
+        let mut sources = Lines::default();
         for dye in dyes {
             let measured = dye.measured_quantum_yield.map_or("unknown".into(), |q| q.to_string());
             table.add([
-                dye.name.clone(),
+                dye.name.to_owned(),
                 dye.quantum_yield.to_string(),
                 measured,
                 format!("{:.0} nm", dye.mean_emission_nm),
             ]);
-        }
-        let mut sources = Lines::default();
-        for dye in dyes {
-            sources.add(&dye.name, &dye.provenance);
+            sources.add(dye.name, dye.provenance);
         }
         format!("\n{table}\nWhere the dyes come from\n{sources}")
     }
 }
 
-impl Report for InspectReport {
+impl<'a> DyeReport<'a> {
+    fn of(model: &'a DyeModel) -> Vec<Self> {
+        let dyes = model.set().dyes().iter().zip(model.curves());
+        let report = dyes.map(|(dye, curves)| Self {
+            name: &dye.name,
+            quantum_yield: curves.quantum_yield,
+            measured_quantum_yield: dye.quantum_yield,
+            mean_emission_nm: curves.mean_emission_nm,
+            provenance: &dye.provenance,
+        });
+        report.collect()
+    }
+}
+
+impl Report for InspectReport<'_> {
     fn text(&self) -> String {
-        let contract = &self.contract;
-        let [red, green, blue] = contract.primaries_xy.map(|[x, y]| format!("({x}, {y})"));
-        let [x, y] = contract.white_xy;
+        let Contract { space, illuminant, observer, adaptation } = self.contract;
+        let [red, green, blue] = space.primaries().map(|[x, y]| format!("({x}, {y})"));
+        let [x, y] = space.white();
         let slope = self.fit.slope_max_per_nm.map_or("none".into(), |s| format!("{s} per nm"));
         let mut lines = Lines::default();
         lines
-            .add("file", format_args!("{}, {}", self.file, files::size(self.bytes)))
+            .add_file("file", &self.file, self.bytes)
             .add("resolution", format_args!("{0} × {0} × {0}", self.resolution))
-            .add("RGB space", &contract.rgb_space)
+            .add("RGB space", space.name())
             .add("primaries", format_args!("red {red}, green {green}, blue {blue}"))
             .add("white", format_args!("({x}, {y})"))
-            .add("illuminant", &contract.illuminant)
-            .add("observer", &contract.observer)
-            .add("adaptation", &contract.adaptation);
+            .add("illuminant", illuminant.name())
+            .add("observer", observer.name())
+            .add("adaptation", adaptation);
         self.model.add_to(&mut lines);
         lines
             .add("metric", &self.fit.metric)
             .add("slope limit", slope)
             .add("method", &self.fit.method)
             .add("sweeps", self.fit.sweeps)
-            .add("evaluations", self.fit.evaluations);
-        self.summary.add_to(&mut lines);
+            .add("evaluations", self.fit.evaluations)
+            .add_summary(&self.summary);
         format!("{lines}{}", self.model.dye_table())
     }
 }

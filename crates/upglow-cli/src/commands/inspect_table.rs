@@ -1,4 +1,4 @@
-//! `upglow inspect` of a table of coefficients, ours or another program's.
+//! `upglow inspect` of a coefficient table, ours or another program's.
 
 use std::fs::File;
 use std::io::Read as _;
@@ -8,17 +8,17 @@ use serde::Serialize;
 use upglow::CoefficientTable;
 use upglow_color::Contract;
 use upglow_fit::round_trip;
-use upglow_terminal::{Failure, io_message};
+use upglow_terminal::{Console, Failure, Report};
 
 use crate::args::InspectArgs;
-use crate::output::{Format, Lines, Report};
-use crate::{files, plan};
+use crate::output::Lines;
+use crate::plan;
 
 /// Random colors of the round trip, and the number they start from.
 const POINTS: usize = 10_000;
 const SEED: u64 = 0;
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Debug, Serialize)]
 struct TableReport {
     file: String,
     bytes: u64,
@@ -33,30 +33,26 @@ struct TableReport {
     max_de2000: f64,
 }
 
-/// Whether a file begins as tables of coefficients do.
+/// Whether a file begins as coefficient tables do.
 pub(super) fn is_table(path: &Path) -> bool {
     let mut start = [0; 4];
     File::open(path).and_then(|mut file| file.read_exact(&mut start)).is_ok() && &start == b"SPEC"
 }
 
-pub(super) fn run(args: &InspectArgs, format: Format) -> Result<(), Failure> {
-    let Some(space) = &args.space else {
+pub(super) fn run(args: InspectArgs, console: &Console) -> Result<(), Failure> {
+    let Some(space) = args.space else {
         let message = "not given, expected the RGB space of the table, which does not name it";
         return Err(Failure::option("--space", message));
     };
-    let mut contract = Contract { space: plan::space(space)?, ..Contract::default() };
-    if let Some(text) = &args.illuminant {
-        contract.illuminant = plan::light("--illuminant", text)?;
-    }
-    plan::check(&contract)?;
-    let bytes = std::fs::read(&args.file).map_err(|error| {
-        let found = io_message(&error);
-        Failure::file(&args.file, format_args!("{found}, expected a table of coefficients"))
-    })?;
+    let illuminant = args.illuminant.as_deref().map(|text| plan::light("--illuminant", text));
+    let illuminant = illuminant.transpose()?.unwrap_or_default();
+    let contract = plan::checked(Contract { space, illuminant, ..Contract::default() })?;
+    let bytes = std::fs::read(&args.file)
+        .map_err(|error| Failure::system(&args.file, &error, "a coefficient table"))?;
     let table = CoefficientTable::from_bytes(&bytes);
     let table = table.map_err(|error| Failure::file(&args.file, error))?;
     let spread = round_trip(&table, &contract, POINTS, SEED);
-    format.print(&TableReport {
+    console.print(&TableReport {
         file: args.file.display().to_string(),
         bytes: bytes.len() as u64,
         resolution: table.resolution(),
@@ -75,8 +71,8 @@ impl Report for TableReport {
         let Self { resolution, points, mean_de2000, p95_de2000, max_de2000, .. } = self;
         let mut lines = Lines::default();
         lines
-            .add("file", format_args!("{}, {}", self.file, files::size(self.bytes)))
-            .add("kind", "table of coefficients, reflectance only")
+            .add_file("file", &self.file, self.bytes)
+            .add("kind", "coefficient table, reflectance only")
             .add("resolution", format_args!("3 × {resolution} × {resolution} × {resolution}"))
             .add("integrator", if self.integrator { "yes" } else { "no" })
             .add("judged as", format_args!("{} under {}", self.rgb_space, self.illuminant))

@@ -1,111 +1,77 @@
 //! `upglow lint`: whether files are well-formed spectral EXR.
 
-use std::path::Path;
-
 use serde::Serialize;
-use upglow_image::{Depth, ExrReader, Lint, Severity, baked_form, lint};
-use upglow_terminal::Failure;
+use upglow_image::{Depth, ExrReader, Lint, baked_form, lint};
+use upglow_terminal::{Console, Failure, Report};
 
 use crate::args::LintArgs;
-use crate::output::{Format, Lines, Report};
+use crate::output::Lines;
 use crate::pictures;
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Debug, Serialize)]
 struct LintReport {
     file: String,
     /// What `upglow bake` made it as, if it did.
     baked_as: Option<String>,
     well_formed: bool,
-    reflectance_channels: usize,
-    radiance_channels: usize,
-    polarization_channels: usize,
-    reradiation_channels: usize,
-    compact: bool,
-    findings: Vec<FindingReport>,
+    #[serde(flatten)]
+    lint: Lint,
 }
 
-#[derive(Clone, Debug, Serialize)]
-struct FindingReport {
-    severity: &'static str,
-    found: String,
-    expected: String,
-}
-
-pub(crate) fn run(args: &LintArgs, format: Format) -> Result<(), Failure> {
+pub(crate) fn run(args: &LintArgs, console: &Console) -> Result<(), Failure> {
     let depth = if args.names_only { Depth::Header } else { Depth::Pixels };
     let mut broken = Vec::new();
-    for (number, path) in args.files.iter().enumerate() {
+    for path in &args.files {
         pictures::check_there(path, "an OpenEXR file")?;
-        let found = lint(path, depth).map_err(|error| Failure::file(path, error))?;
-        format.separate(number)?;
-        format.print(&LintReport::new(path, &found))?;
-        if !found.is_well_formed() {
+        let lint = lint(path, depth).map_err(|error| Failure::file(path, error))?;
+        if !lint.is_well_formed() {
             broken.push(path);
         }
+        let reader = ExrReader::open(path).ok();
+        console.print(&LintReport {
+            file: path.display().to_string(),
+            baked_as: reader.and_then(|r| baked_form(r.attributes()).map(str::to_owned)),
+            well_formed: lint.is_well_formed(),
+            lint,
+        })?;
     }
     match broken[..] {
         [] => Ok(()),
         [one] => Err(Failure::file(one, "broken, expected a well-formed spectral EXR")),
-        [first, ..] => Err(Failure::file(
-            first,
-            format_args!(
-                "broken, like {} others, expected well-formed spectral EXR",
-                broken.len() - 1
-            ),
-        )),
-    }
-}
-
-impl LintReport {
-    fn new(path: &Path, lint: &Lint) -> Self {
-        let reader = ExrReader::open(path).ok();
-        let findings = lint.findings.iter().map(|finding| FindingReport {
-            severity: match finding.severity {
-                Severity::Warning => "warning",
-                Severity::Error => "error",
-            },
-            found: finding.found.clone(),
-            expected: finding.expected.clone(),
-        });
-        Self {
-            file: path.display().to_string(),
-            baked_as: reader.and_then(|r| baked_form(r.attributes()).map(str::to_owned)),
-            well_formed: lint.is_well_formed(),
-            reflectance_channels: lint.reflectance,
-            radiance_channels: lint.radiance,
-            polarization_channels: lint.polarization,
-            reradiation_channels: lint.reradiation,
-            compact: lint.is_compact,
-            findings: findings.collect(),
+        [first, ref others @ ..] => {
+            let others = others.len();
+            let message =
+                format!("broken, like {others} others, expected well-formed spectral EXR");
+            Err(Failure::file(first, message))
         }
     }
 }
 
 impl Report for LintReport {
     fn text(&self) -> String {
+        let Lint { findings, reflectance, radiance, polarization, reradiation, is_compact } =
+            &self.lint;
         let kinds = [
-            (self.reflectance_channels, "reflectance"),
-            (self.radiance_channels, "radiance"),
-            (self.polarization_channels, "polarization"),
-            (self.reradiation_channels, "re-radiation"),
+            (reflectance, "reflectance"),
+            (radiance, "radiance"),
+            (polarization, "polarization"),
+            (reradiation, "re-radiation"),
         ];
-        let kinds = kinds.iter().filter(|(count, _)| *count > 0);
+        let kinds = kinds.iter().filter(|(count, _)| **count > 0);
         let mut kinds: Vec<String> = kinds.map(|(count, kind)| format!("{count} {kind}")).collect();
-        if self.compact {
+        if *is_compact {
             kinds.push("compact dyes".into());
         }
         let kinds = if kinds.is_empty() { "none".to_owned() } else { kinds.join(", ") };
         let mut lines = Lines::default();
         lines.add("file", &self.file);
-        match self.baked_as.as_deref() {
-            Some("spectral") | None => {}
-            Some(form) => {
-                lines.add("baked as", format_args!("{form}, which is no spectral picture"));
-            }
+        if let Some(form) = self.baked_as.as_deref().filter(|form| *form != "spectral") {
+            lines.add("baked as", format_args!("{form}, which is no spectral picture"));
         }
         lines.add("channels", kinds);
-        for FindingReport { severity, found, expected } in &self.findings {
-            lines.add(severity, format_args!("{found}, expected {expected}"));
+        for finding in findings {
+            let expected = &finding.expected;
+            lines.add(finding.severity, format_args!("{}, expected {expected}", finding.found));
         }
         lines.add("well-formed", if self.well_formed { "yes" } else { "no" });
         lines.to_string()

@@ -1,4 +1,4 @@
-//! The commands, one a file.
+//! The commands, each in its own file.
 
 mod bake;
 mod build;
@@ -10,38 +10,34 @@ mod export;
 mod inspect;
 mod inspect_table;
 mod lint;
+mod material_report;
 mod read;
-mod summary;
 mod verify;
 
+use crate::args::{Args, Command};
 use upglow_terminal::Failure;
 
-use crate::args::{Args, Command};
-use crate::output::Format;
-
 /// Does what was asked for.
-pub(crate) fn run(args: Args) -> Result<(), Failure> {
-    let format = if args.json { Format::Json } else { Format::Text };
-    match args.command {
-        Command::Build(build) => build::run(&build, format, args.quiet),
-        Command::Inspect(inspect) => inspect::run(&inspect, format),
-        Command::Verify(verify) => verify::run(&verify, format, args.quiet),
-        Command::Color(color) => color::run(&color, format),
-        Command::Export(export) => export::run(&export, format, args.quiet),
-        Command::Bake(bake) => bake::run(&bake, format, args.quiet),
-        Command::Check(check) => check::run(&check, format, args.quiet),
-        Command::Read(read) => read::run(&read, format),
-        Command::Lint(lint) => lint::run(&lint, format),
-        Command::Examples(examples) => examples::run(&examples, format),
+pub(crate) fn run(Args { command, console }: Args) -> Result<(), Failure> {
+    match command {
+        Command::Build(args) => build::run(&args, &console),
+        Command::Inspect(args) => inspect::run(args, &console),
+        Command::Verify(args) => verify::run(&args, &console),
+        Command::Color(args) => color::run(&args, &console),
+        Command::Export(args) => export::run(&args, &console),
+        Command::Bake(args) => bake::run(&args, &console),
+        Command::Check(args) => check::run(&args, &console),
+        Command::Read(args) => read::run(&args, &console),
+        Command::Lint(args) => lint::run(&args, &console),
+        Command::Examples(args) => examples::run(&args, &console),
         Command::Figures(_) => Err(moved("figures")),
         Command::Reproduce(_) => Err(moved("reproduce")),
     }
 }
 
 /// The program that has a command which was once here.
-fn moved(command: &'static str) -> Failure {
-    Failure::option(
-        command,
-        format_args!("now a command of the program upglow-study, run `upglow-study {command}`"),
-    )
+fn moved(command: &str) -> Failure {
+    let message =
+        format!("now a command of the program upglow-study, run `upglow-study {command}`");
+    Failure::option(command, message)
 }

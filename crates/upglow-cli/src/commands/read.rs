@@ -3,19 +3,28 @@
 use serde::Serialize;
 use upglow::{Fluorescence, Material, Model};
 use upglow_image::{
-    ExrReader, MaterialPicture, SpectralPicture, SpectralPictureError, SpectralTexel, baked_form,
+    BispectralUnit, ExrReader, MaterialPicture, SpectralPicture, SpectralPictureError,
+    SpectralTexel, baked_form,
 };
-use upglow_terminal::Failure;
+use upglow_terminal::{Console, Failure, Report};
 
+use super::material_report::{ReflectanceReport, dye_names};
 use crate::args::ReadArgs;
-use crate::output::{Format, Lines, Report, Side, Table, unsigned_zero};
+use crate::output::{Lines, Side, Table};
 use crate::pictures;
 
-#[derive(Clone, Debug, Serialize)]
-struct ReadReport {
+/// Where the texel is.
+#[derive(Debug, Serialize)]
+struct Texel {
     file: String,
     x: usize,
     y: usize,
+}
+
+#[derive(Debug, Serialize)]
+struct SpectrumReport {
+    #[serde(flatten)]
+    texel: Texel,
     /// Wavelength (nm), and share of its light that leaves at it.
     reflectance: Vec<(f64, f32)>,
     /// Wavelength (nm), radiance.
@@ -28,16 +37,12 @@ struct ReadReport {
 }
 
 /// The six numbers of a baked material, or what they mean.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Debug, Serialize)]
 struct MaterialReport {
-    file: String,
-    x: usize,
-    y: usize,
-    /// Coefficients of the reflectance for λ in nm.
-    c0: f64,
-    c1: f64,
-    c2: f64,
-    steepest_per_nm: f64,
+    #[serde(flatten)]
+    texel: Texel,
+    #[serde(flatten)]
+    reflectance: ReflectanceReport,
     dye: Option<String>,
     neighbor: Option<String>,
     weight: Option<f64>,
@@ -46,84 +51,83 @@ struct MaterialReport {
     concentration: f64,
 }
 
-pub(crate) fn run(args: &ReadArgs, format: Format) -> Result<(), Failure> {
-    let faulty = |error: &dyn std::fmt::Display| Failure::file(&args.file, error);
+pub(crate) fn run(args: &ReadArgs, console: &Console) -> Result<(), Failure> {
     pictures::check_there(&args.file, "a spectral or material EXR")?;
-    let reader = ExrReader::open(&args.file).map_err(|error| faulty(&error))?;
-    check_place(args.at, reader.size())?;
+    let reader = ExrReader::open(&args.file).map_err(|error| Failure::file(&args.file, error))?;
+    check_position(args.at, reader.size())?;
     let [x, y] = args.at;
-    let file = args.file.display().to_string();
+    let texel = Texel { file: args.file.display().to_string(), x, y };
     if MaterialPicture::is_stated(&reader) {
-        let mut picture = MaterialPicture::open(&args.file).map_err(|error| faulty(&error))?;
-        let material = picture.at(x, y).map_err(|error| faulty(&error))?;
-        return format.print(&MaterialReport::new(file, args.at, material, picture.model()));
+        let picture = MaterialPicture::open(&args.file);
+        let found = picture.and_then(|mut picture| {
+            Ok(MaterialReport::new(texel, picture.at(x, y)?, picture.model()))
+        });
+        return console.print(&found.map_err(|error| Failure::file(&args.file, error))?);
     }
-    let open = SpectralPicture::open(&args.file);
-    let mut picture = open.map_err(|error| match (&error, baked_form(reader.attributes())) {
+    let picture = SpectralPicture::open(&args.file);
+    let found = picture.and_then(|mut picture| {
+        Ok(SpectrumReport::new(texel, picture.at(x, y)?, picture.bispectral_unit()))
+    });
+    let found = found.map_err(|error| match (&error, baked_form(reader.attributes())) {
         (SpectralPictureError::NotSpectral, Some("radiance")) => {
-            faulty(&"colors under a light, expected a file baked as material or spectral")
+            let message = "colors under a light, expected a file baked as material or spectral";
+            Failure::file(&args.file, message)
         }
-        _ => faulty(&error),
+        _ => Failure::file(&args.file, error),
     })?;
-    let unit = picture.bispectral_unit().map(upglow_image::BispectralUnit::name);
-    let texel = picture.at(x, y).map_err(|error| faulty(&error))?;
-    format.print(&ReadReport::new(file, args.at, unit, texel))
+    console.print(&found)
 }
 
-fn check_place([x, y]: [usize; 2], [width, height]: [usize; 2]) -> Result<(), Failure> {
+fn check_position([x, y]: [usize; 2], [width, height]: [usize; 2]) -> Result<(), Failure> {
     if x < width && y < height {
         return Ok(());
     }
     let [right, bottom] = [width - 1, height - 1];
-    Err(Failure::option(
-        "--at",
-        format_args!("{x},{y} is outside the picture, expected 0,0 to {right},{bottom}"),
-    ))
+    let message = format!("{x},{y} is outside the picture, expected 0,0 to {right},{bottom}");
+    Err(Failure::option("--at", message))
 }
 
 impl MaterialReport {
-    fn new(file: String, [x, y]: [usize; 2], material: Material, model: &Model) -> Self {
+    fn new(texel: Texel, material: Material, model: &Model) -> Self {
         let Material { reflectance, fluorescence } = material;
-        let [c0, c1, c2] = [reflectance.c0, reflectance.c1, reflectance.c2].map(unsigned_zero);
-        let mut report = Self {
-            file,
-            x,
-            y,
-            c0,
-            c1,
-            c2,
-            steepest_per_nm: reflectance.steepest_slope_per_nm(),
-            dye: None,
-            neighbor: None,
-            weight: None,
-            emission_peak_nm: None,
-            stokes_shift_nm: None,
-            concentration: fluorescence.concentration(),
+        let [dye, neighbor] = dye_names(fluorescence, model)
+            .map_or([None, None], |names| names.map(|name| Some(name.to_owned())));
+        let (weight, bells) = match fluorescence {
+            Fluorescence::Dyes { weight, .. } => (Some(weight), None),
+            Fluorescence::Analytic { emission_peak_nm, stokes_shift_nm, .. } => {
+                (None, Some((emission_peak_nm, stokes_shift_nm)))
+            }
+            _ => (None, None),
         };
-        match (fluorescence, model) {
-            (Fluorescence::Dyes { first, weight, .. }, Model::Dyes(dyes)) => {
-                let name = |dye: usize| Some(dyes.set().dyes()[dye].name.clone());
-                (report.dye, report.neighbor) = (name(first), name(dyes.partner(first)));
-                report.weight = Some(weight);
-            }
-            (Fluorescence::Analytic { emission_peak_nm, stokes_shift_nm, .. }, _) => {
-                report.emission_peak_nm = Some(emission_peak_nm);
-                report.stokes_shift_nm = Some(stokes_shift_nm);
-            }
-            _ => {}
+        Self {
+            texel,
+            reflectance: reflectance.into(),
+            dye,
+            neighbor,
+            weight,
+            emission_peak_nm: bells.map(|(peak, _)| peak),
+            stokes_shift_nm: bells.map(|(_, shift)| shift),
+            concentration: fluorescence.concentration(),
         }
-        report
+    }
+}
+
+impl Texel {
+    fn lines(&self) -> Lines {
+        let mut lines = Lines::default();
+        lines.add("texel", format_args!("{},{} of {}", self.x, self.y, self.file));
+        lines
     }
 }
 
 impl Report for MaterialReport {
     fn text(&self) -> String {
-        let Self { c0, c1, c2, steepest_per_nm, concentration, .. } = self;
-        let mut lines = Lines::default();
+        let Self { reflectance: shape, concentration, .. } = self;
+        let upglow::Sigmoid { c0, c1, c2 } = shape.coefficients;
+        let mut lines = self.texel.lines();
         lines
-            .add("texel", format_args!("{},{} of {}", self.x, self.y, self.file))
             .add("reflectance", format_args!("c0 {c0:.6e}, c1 {c1:.6e}, c2 {c2:.6e}, λ in nm"))
-            .add("steepest", format_args!("{steepest_per_nm:.5} per nm"));
+            .add("steepest", format_args!("{:.5} per nm", shape.steepest_per_nm));
         if let (Some(dye), Some(neighbor), Some(weight)) = (&self.dye, &self.neighbor, self.weight)
         {
             let (first, second) = (100.0 * (1.0 - weight), 100.0 * weight);
@@ -137,23 +141,16 @@ impl Report for MaterialReport {
     }
 }
 
-impl ReadReport {
-    fn new(
-        file: String,
-        [x, y]: [usize; 2],
-        unit: Option<&'static str>,
-        texel: SpectralTexel,
-    ) -> Self {
-        let pairs = texel.reradiation.iter().map(|r| (r.in_nm, r.out_nm, r.value));
+impl SpectrumReport {
+    fn new(texel: Texel, found: SpectralTexel, unit: Option<BispectralUnit>) -> Self {
+        let pairs = found.reradiation.iter().map(|r| (r.in_nm, r.out_nm, r.value));
         Self {
-            file,
-            x,
-            y,
+            texel,
             reradiation: pairs.collect(),
-            reradiation_unit: unit,
-            reflectance: texel.reflectance,
-            radiance: texel.radiance,
-            preview: texel.preview,
+            reradiation_unit: unit.map(BispectralUnit::name),
+            reflectance: found.reflectance,
+            radiance: found.radiance,
+            preview: found.preview,
         }
     }
 
@@ -165,10 +162,9 @@ impl ReadReport {
     }
 }
 
-impl Report for ReadReport {
+impl Report for SpectrumReport {
     fn text(&self) -> String {
-        let mut lines = Lines::default();
-        lines.add("texel", format_args!("{},{} of {}", self.x, self.y, self.file));
+        let mut lines = self.texel.lines();
         if let Some([r, g, b]) = self.preview {
             lines.add("preview", format_args!("{r:.4}, {g:.4}, {b:.4}"));
         }

@@ -1,60 +1,39 @@
 //! `upglow verify`: recomputes what a cube promises.
 
 use serde::Serialize;
-use upglow_fit::{Check, Offender, Place, Verdict, VerifyOptions, VerifyReport, verify};
-use upglow_terminal::{Bar, Failure, on_threads};
+use upglow::Interpolation;
+use upglow_fit::{Check, Offender, Verdict, VerifyOptions, verify};
+use upglow_terminal::{Console, Failure, Report};
 
 use crate::args::VerifyArgs;
 use crate::files;
-use crate::output::{Format, Report, Side, Table};
+use crate::output::{Side, Table};
 
-#[derive(Clone, Debug, Serialize)]
-struct VerificationReport {
+#[derive(Debug, Serialize)]
+struct VerificationReport<'a> {
     file: String,
-    interpolation: String,
+    interpolation: Interpolation,
     seed: u64,
     nodes: usize,
     points: usize,
     holds: bool,
-    checks: Vec<CheckReport>,
+    checks: &'a [Check],
 }
 
-#[derive(Clone, Debug, Serialize)]
-struct CheckReport {
-    name: &'static str,
-    about: &'static str,
-    verdict: String,
-    value: f64,
-    limit: Option<f64>,
-    unit: &'static str,
-    checked: usize,
-    violations: usize,
-    worst: Option<OffenderReport>,
-    /// What is said where the law is broken.
-    #[serde(skip)]
-    fault: Option<String>,
-}
-
-#[derive(Clone, Debug, Serialize)]
-struct OffenderReport {
-    found: f64,
-    wavelength_nm: Option<f64>,
-    /// `[blue, green, red]` where the offender is a node.
-    node: Option<[usize; 3]>,
-    rgb: Option<[f64; 3]>,
-    dye: Option<String>,
-}
-
-pub(crate) fn run(args: &VerifyArgs, format: Format, quiet: bool) -> Result<(), Failure> {
+pub(crate) fn run(args: &VerifyArgs, console: &Console) -> Result<(), Failure> {
     let cube = files::read_cube(&args.file)?;
-    let options =
-        VerifyOptions { points: args.points, interpolation: args.interpolation, seed: args.seed };
-    let bar = Bar::start(quiet);
-    let found = on_threads(args.threads, || verify(&cube, &options, &bar))?;
-    bar.finish();
-    let report = found.map_err(|_| Failure::Stopped)?;
-    let file = args.file.display().to_string();
-    format.print(&VerificationReport::new(file, &options, &report))?;
+    let VerifyArgs { points, interpolation, seed, .. } = *args;
+    let options = VerifyOptions { points, interpolation, seed };
+    let report = console.work(args.threads, |bar| verify(&cube, &options, bar))??;
+    console.print(&VerificationReport {
+        file: args.file.display().to_string(),
+        interpolation,
+        seed,
+        nodes: report.nodes,
+        points: report.points,
+        holds: report.holds(),
+        checks: &report.checks,
+    })?;
     match report.broken().next() {
         None => Ok(()),
         Some(check) => Err(Failure::file(&args.file, broken(check))),
@@ -69,54 +48,7 @@ fn broken(check: &Check) -> String {
     format!("{name}: {found}, expected {}; {violations} violations", expected.trim_end())
 }
 
-impl VerificationReport {
-    fn new(file: String, options: &VerifyOptions, report: &VerifyReport) -> Self {
-        Self {
-            file,
-            interpolation: options.interpolation.to_string(),
-            seed: options.seed,
-            nodes: report.nodes,
-            points: report.points,
-            holds: report.holds(),
-            checks: report.checks.iter().map(CheckReport::new).collect(),
-        }
-    }
-}
-
-impl CheckReport {
-    fn new(check: &Check) -> Self {
-        Self {
-            name: check.name,
-            about: check.about,
-            verdict: check.verdict.to_string(),
-            value: check.value,
-            limit: check.limit,
-            unit: check.unit,
-            checked: check.checked,
-            violations: check.violations,
-            worst: check.worst.as_ref().map(OffenderReport::new),
-            fault: (check.verdict == Verdict::Broken).then(|| broken(check)),
-        }
-    }
-
-    fn applies(&self) -> bool {
-        self.verdict != Verdict::NotApplicable.to_string()
-    }
-}
-
-impl OffenderReport {
-    fn new(offender: &Offender) -> Self {
-        let (node, rgb, dye) = match &offender.place {
-            Place::Node { node, rgb } => (Some(*node), Some(rgb.0), None),
-            Place::Point { rgb } => (None, Some(rgb.0), None),
-            Place::Dye { name } => (None, None, Some(name.clone())),
-        };
-        let Offender { found, wavelength_nm, .. } = *offender;
-        Self { found, wavelength_nm, node, rgb, dye }
-    }
-}
-
-impl Report for VerificationReport {
+impl Report for VerificationReport<'_> {
     fn text(&self) -> String {
         let mut table = Table::new([
             ("check", Side::Left),
@@ -126,12 +58,12 @@ impl Report for VerificationReport {
             ("unit", Side::Left),
             ("what", Side::Left),
         ]);
-        for check in &self.checks {
-            let value = if check.applies() { short(check.value) } else { String::new() };
+        for check in self.checks {
+            let applies = check.verdict != Verdict::NotApplicable;
             table.add([
                 check.name.into(),
-                check.verdict.clone(),
-                value,
+                check.verdict.to_string(),
+                if applies { short(check.value) } else { String::new() },
                 check.limit.map_or(String::new(), short),
                 if check.unit == "CIEDE2000" { "ΔE00" } else { check.unit }.into(),
                 check.about.into(),
@@ -141,8 +73,8 @@ impl Report for VerificationReport {
         let tried = format!(
             "{nodes} nodes and {points} colors between them, interpolation {interpolation}, seed {seed}"
         );
-        let faults = self.checks.iter().filter_map(|check| check.fault.as_ref());
-        let faults: String = faults.map(|fault| format!("Broken: {fault}.\n")).collect();
+        let faults = self.checks.iter().filter(|check| check.verdict == Verdict::Broken);
+        let faults: String = faults.map(|check| format!("Broken: {}.\n", broken(check))).collect();
         let verdict = if self.holds { "Every law holds for" } else { "Checked" };
         format!("{table}\n{faults}{verdict} {tried}.\n")
     }

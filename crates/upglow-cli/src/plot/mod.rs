@@ -15,7 +15,7 @@ const LAST_NM: f64 = 780.0;
 const VISIBLE: f64 = 1e-3;
 
 /// The curves of a material on [`Grid::FINE`].
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub(crate) struct Curves {
     pub(crate) wavelengths_nm: Vec<f64>,
     /// Share of light reflected at its own wavelength, (1 − c·a)·r, 0..=1.

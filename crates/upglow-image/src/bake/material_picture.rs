@@ -23,7 +23,7 @@ pub enum MaterialPictureError {
     )]
     Model,
     /// A texel's numbers make no material of the model.
-    #[error("texel {x},{y}: {source}")]
+    #[error("texel {x},{y}")]
     Texel {
         /// Column, from 0 at the left.
         x: usize,

@@ -226,7 +226,7 @@ fn flaws(report: &CheckReport) -> String {
             .collect();
         format!(
             "<tr><th class=\"name\">{}</th><td class=\"number\">{}</td><td>{}</td></tr>\n",
-            flaw_name(flaw),
+            flaw,
             grouped(report.counts.of(flaw)),
             places.join(" ")
         )
@@ -238,15 +238,6 @@ fn flaws(report: &CheckReport) -> String {
          <tbody>\n{}</tbody>\n</table>\n",
         found.map(row).collect::<String>()
     )
-}
-
-fn flaw_name(flaw: Flaw) -> &'static str {
-    match flaw {
-        Flaw::AboveOne => "above 1",
-        Flaw::Negative => "negative",
-        Flaw::NotANumber => "not a number",
-        Flaw::Infinite => "infinite",
-    }
 }
 
 fn worst(texels: &[WorstTexel]) -> String {

@@ -1,6 +1,7 @@
 //! What is counted and remembered of texels; parts of a picture add up to the whole, in any order.
 
 use std::cmp::Ordering;
+use std::fmt;
 
 use upglow_color::StandingKind;
 use upglow_fit::Estimate;
@@ -92,6 +93,17 @@ impl Flaw {
             Self::Negative => v < 0.0 && v.is_finite(),
             Self::NotANumber => v.is_nan(),
             Self::Infinite => v.is_infinite(),
+        })
+    }
+}
+
+impl fmt::Display for Flaw {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::AboveOne => "above 1",
+            Self::Negative => "negative",
+            Self::NotANumber => "not a number",
+            Self::Infinite => "infinite",
         })
     }
 }

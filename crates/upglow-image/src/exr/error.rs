@@ -7,7 +7,7 @@ use std::io;
 #[non_exhaustive]
 pub enum ExrError {
     /// The file cannot be read.
-    #[error("{0}")]
+    #[error(transparent)]
     Io(#[from] io::Error),
     /// The file begins with other bytes.
     #[error("the file begins with {found:02x?}, expected an OpenEXR file: [76, 2f, 31, 01]")]

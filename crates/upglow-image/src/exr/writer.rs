@@ -72,7 +72,7 @@ pub enum WriteExrError {
     #[error(transparent)]
     Create(#[from] AsideError),
     /// The file cannot be filled or named.
-    #[error("{0}")]
+    #[error(transparent)]
     Io(#[from] io::Error),
     /// The picture is empty or too large.
     #[error("{} by {} pixels, expected 1 to {MAX_SIDE} a side", .found[0], .found[1])]

@@ -4,17 +4,16 @@ mod figures;
 mod reproduce;
 
 use upglow_fit::BuildError;
-use upglow_terminal::{Failure, Format};
+use upglow_terminal::Failure;
 
 use crate::args::{Args, Command};
 use crate::error::StudyError;
 
 /// Does what was asked for.
-pub(crate) fn run(args: Args) -> Result<(), Failure> {
-    let format = if args.json { Format::Json } else { Format::Text };
-    match args.command {
-        Command::Figures(figures) => figures::run(&figures, format, args.quiet),
-        Command::Reproduce(reproduce) => reproduce::run(&reproduce, format, args.quiet),
+pub(crate) fn run(Args { command, console }: Args) -> Result<(), Failure> {
+    match command {
+        Command::Figures(args) => figures::run(&args, &console),
+        Command::Reproduce(args) => reproduce::run(&args, &console),
     }
 }
 

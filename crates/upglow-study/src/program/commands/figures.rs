@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use serde::Serialize;
-use upglow_terminal::{Bar, Failure, Format, Report, files, on_threads};
+use upglow_terminal::{Console, Failure, Report, files};
 
 use super::failure;
 use crate::args::FiguresArgs;
@@ -28,20 +28,18 @@ struct FigureReport {
     caption: String,
 }
 
-pub(super) fn run(args: &FiguresArgs, format: Format, quiet: bool) -> Result<(), Failure> {
+pub(super) fn run(args: &FiguresArgs, console: &Console) -> Result<(), Failure> {
     // The folder itself is made when there is something to put in it.
     let probe = if args.out.is_dir() { args.out.join("figure.svg") } else { args.out.clone() };
     files::check_output(&probe)?;
     let options = FigureOptions { only: args.only, display: args.display };
     let cubes = Cubes::new(args.resolution);
-    let bar = Bar::start(quiet);
-    let drawn = on_threads(args.threads, || figures(&cubes, &options, &bar))?;
-    bar.finish();
+    let drawn = console.work(args.threads, |bar| figures(&cubes, &options, bar))?;
     let drawn = drawn.map_err(failure)?;
     files::make_folder(&args.out)?;
     let written = drawn.iter().map(|figure| write(args, figure)).collect::<Result<Vec<_>, _>>()?;
     let folder = args.out.display().to_string();
-    format.print(&FiguresReport { folder, figures: written })
+    console.print(&FiguresReport { folder, figures: written })
 }
 
 fn write(args: &FiguresArgs, figure: &Figure) -> Result<FigureReport, Failure> {

@@ -1,7 +1,7 @@
 //! `upglow-study reproduce`: the paper's claims, measured.
 
 use serde::Serialize;
-use upglow_terminal::{Bar, Failure, Format, Report, files, on_threads};
+use upglow_terminal::{Console, Failure, Report, files};
 
 use super::failure;
 use crate::args::ReproduceArgs;
@@ -15,19 +15,17 @@ struct ReproduceReport {
     claims: Vec<Claim>,
 }
 
-pub(super) fn run(args: &ReproduceArgs, format: Format, quiet: bool) -> Result<(), Failure> {
+pub(super) fn run(args: &ReproduceArgs, console: &Console) -> Result<(), Failure> {
     if let Some(path) = &args.output {
         files::check_output(path)?;
     }
     let cubes = Cubes::new(args.resolution);
-    let bar = Bar::start(quiet);
-    let claims = on_threads(args.threads, || reproduce(&cubes, &bar))?;
-    bar.finish();
+    let claims = console.work(args.threads, |bar| reproduce(&cubes, bar))?;
     let report = ReproduceReport { resolution: args.resolution, claims: claims.map_err(failure)? };
     if let Some(path) = &args.output {
         files::write(path, report.text().as_bytes())?;
     }
-    format.print(&report)
+    console.print(&report)
 }
 
 impl Report for ReproduceReport {

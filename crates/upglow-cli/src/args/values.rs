@@ -1,0 +1,65 @@
+//! How values of options are read that are neither a word nor a number.
+
+use upglow_color::{Grid, RgbSpace, RgbSpaceError};
+use upglow_terminal::parsed;
+
+/// The greatest slope of a reflectance, 1/nm; `None` for no limit.
+pub(super) type SlopeLimit = Option<f64>;
+
+pub(super) fn slope_limit(text: &str) -> Result<SlopeLimit, String> {
+    match text {
+        "none" => Ok(None),
+        _ => parsed(text, "a number of 1/nm or none").map(Some),
+    }
+}
+
+/// Column and row of a texel.
+pub(super) fn position(text: &str) -> Result<[usize; 2], String> {
+    let expected = "two whole numbers X,Y";
+    let (x, y) = text.split_once(',').ok_or_else(|| format!("{text:?}, expected {expected}"))?;
+    Ok([parsed(x, expected)?, parsed(y, expected)?])
+}
+
+/// The name of a space, or eight chromaticities.
+pub(super) fn rgb_space(text: &str) -> Result<RgbSpace, RgbSpaceError> {
+    let numbers: Option<Vec<f64>> = text.split(',').map(|cell| cell.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[rx, ry, gx, gy, bx, by, wx, wy]) => {
+            RgbSpace::custom("custom", [[rx, ry], [gx, gy], [bx, by]], [wx, wy])
+        }
+        _ => RgbSpace::named(text),
+    }
+}
+
+/// Wavelengths FIRST:LAST:STEP within the range of all tables.
+pub(super) fn bands(text: &str) -> Result<Grid, String> {
+    let numbers: Option<Vec<u32>> = text.split(':').map(|cell| cell.trim().parse().ok()).collect();
+    let Some(&[first, last, step]) = numbers.as_deref() else {
+        return Err(format!("{text:?}, expected FIRST:LAST:STEP in whole nm, such as 380:780:10"));
+    };
+    let [low, high] = [Grid::FINE.first_nm(), Grid::FINE.last_nm()];
+    if first < low || last > high {
+        return Err(format!("{text}, expected bands within {low} to {high} nm"));
+    }
+    Grid::try_new(first, last, step).map_err(|error| error.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_slope_limit_has_a_word() {
+        assert_eq!(slope_limit("none"), Ok(None));
+        assert_eq!(slope_limit("0.02"), Ok(Some(0.02)));
+        assert!(slope_limit("steep").is_err());
+    }
+
+    #[test]
+    fn eight_numbers_are_a_space() {
+        let custom = rgb_space("0.64,0.33,0.30,0.60,0.15,0.06,0.3127,0.3290");
+        assert!(custom.is_ok_and(|space| space.name() == "custom"));
+        assert!(rgb_space("rec709").is_err());
+        assert!(rgb_space("0.64,0.33").is_err());
+    }
+}

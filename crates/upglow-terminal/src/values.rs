@@ -1,0 +1,92 @@
+//! How values of options are read: one parser for each kind of value.
+
+use std::ffi::OsStr;
+use std::fmt::Display;
+use std::marker::PhantomData;
+use std::str::FromStr;
+
+use clap::builder::{PossibleValue, TypedValueParser};
+use clap::{Arg, Command};
+use upglow_color::Choice;
+
+/// Reads a word of a [`Choice`]; the help lists the words.
+#[derive(Clone, Copy, Debug)]
+pub struct Word<T>(PhantomData<T>);
+
+/// A parser of the words of an option.
+#[must_use]
+pub fn word<T: Choice>() -> Word<T> {
+    Word(PhantomData)
+}
+
+impl<T: Choice + Send + Sync> TypedValueParser for Word<T> {
+    type Value = T;
+
+    fn parse_ref(
+        &self,
+        command: &Command,
+        option: Option<&Arg>,
+        value: &OsStr,
+    ) -> Result<T, clap::Error> {
+        T::named.parse_ref(command, option, value)
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        let value = |value: &T| PossibleValue::new(value.name()).aliases(value.aliases());
+        Some(Box::new(T::ALL.iter().map(value)))
+    }
+}
+
+/// Reads a number.
+///
+/// # Errors
+///
+/// What was found and expected, in one line.
+pub fn number(text: &str) -> Result<f64, String> {
+    parsed(text, "a number")
+}
+
+/// Reads a whole number of 0 or more.
+///
+/// # Errors
+///
+/// What was found and expected, in one line.
+pub fn count<T: FromStr>(text: &str) -> Result<T, String> {
+    parsed(text, "a whole number of 0 or more")
+}
+
+/// Reads a whole number from the first to the second limit.
+pub fn in_range(
+    [least, most]: [usize; 2],
+) -> impl Fn(&str) -> Result<usize, String> + Clone + Send + Sync + 'static {
+    move |text| {
+        let expected = format!("a whole number from {least} to {most}");
+        match parsed(text, &expected)? {
+            found if (least..=most).contains(&found) => Ok(found),
+            found => Err(format!("{found}, expected {expected}")),
+        }
+    }
+}
+
+/// Any value, or what was expected.
+///
+/// # Errors
+///
+/// What was found and expected, in one line.
+pub fn parsed<T: FromStr>(text: &str, expected: impl Display) -> Result<T, String> {
+    text.trim().parse().map_err(|_| format!("{text:?}, expected {expected}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_number_out_of_range_is_refused() {
+        let resolution = in_range([2, 256]);
+        assert_eq!(resolution("32"), Ok(32));
+        for text in ["1", "257", "-4", "many", "4.5"] {
+            assert!(resolution(text).is_err_and(|e| e.ends_with("from 2 to 256")), "{text}");
+        }
+    }
+}
