@@ -5,7 +5,7 @@ use std::process::Command;
 use std::time::Instant;
 
 use crate::step::{Step, StepError, cargo, finish, finish_aloud, output_of};
-use crate::{c_library, layers, mitsuba, python, python_wheel, readme, tables};
+use crate::{c_library, layers, mitsuba, python, python_wheel, readme, tables, words};
 
 /// Set for the slow tests, so that they may take larger samples.
 const SLOW_VARIABLE: &str = "UPGLOW_SLOW";
@@ -34,7 +34,7 @@ const SLOW_STEP: Step =
 /// Every step; the slow one is the last.
 fn all_steps() -> Vec<Step> {
     let bindings = c_library::STEPS.into_iter().chain(python_wheel::STEPS).chain(mitsuba::STEPS);
-    STEPS.into_iter().chain(bindings).chain([SLOW_STEP]).collect()
+    STEPS.into_iter().chain(words::STEPS).chain(bindings).chain([SLOW_STEP]).collect()
 }
 
 /// What the command line asks for.
@@ -76,8 +76,10 @@ impl Plan {
                 }
             }
         }
+        // The texts are not yet free of the phrases of words.txt.
+        let is_usual = |step: &Step| step.name != "words" && (slow || step.name != SLOW_STEP.name);
         let is_asked_for = |&(place, step): &(usize, &Step)| match only[..] {
-            [] => place >= from && (slow || plan.list || step.name != SLOW_STEP.name),
+            [] => place >= from && (plan.list || is_usual(step)),
             _ => only.contains(&place),
         };
         plan.steps = steps.iter().enumerate().filter(is_asked_for).map(|(_, step)| *step).collect();
@@ -201,7 +203,7 @@ mod tests {
     #[test]
     fn steps_are_chosen_by_name_and_run_in_their_order() {
         assert_eq!(names(&["--only", "docs", "--only", "format"]), ["format", "docs"]);
-        assert_eq!(names(&["--slow"]), all_steps().iter().map(|s| s.name).collect::<Vec<_>>());
+        assert_eq!(names(&["--slow"]).last(), Some(&"slow-tests"));
         assert!(!names(&[]).contains(&"slow-tests"));
         assert_eq!(names(&["--only", "slow-tests"]), ["slow-tests"]);
         let from = names(&["--from", "licenses", "--keep-going"]);

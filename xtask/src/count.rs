@@ -8,7 +8,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::step::{StepError, cargo, output_of, read};
+use crate::step::{StepError, cargo, output_of, read, tracked_files};
 
 /// Comments by line, and languages by the ends of their files' names.
 const LANGUAGES: [(&str, &str, &[&str]); 4] = [
@@ -66,20 +66,11 @@ pub(crate) fn count(root: &Path) -> Result<Count, StepError> {
 }
 
 fn source_files(root: &Path) -> Result<Vec<PathBuf>, StepError> {
-    let mut git = std::process::Command::new("git");
-    git.args(["ls-files", "--cached", "--others", "--exclude-standard"]).current_dir(root);
-    let listed = output_of(git)?;
-    let is_source = |path: &&str| {
+    let is_source = |path: &&String| {
         !GENERATED.iter().any(|generated| path.starts_with(generated))
             && !path.split('/').any(|part| LEFT_OUT_FOLDERS.contains(&part))
     };
-    // A file that was deleted and not yet committed is listed as well.
-    Ok(listed
-        .lines()
-        .filter(is_source)
-        .map(|path| root.join(path))
-        .filter(|p| p.is_file())
-        .collect())
+    Ok(tracked_files(root)?.iter().filter(is_source).map(|path| root.join(path)).collect())
 }
 
 fn has_ending(path: &Path, endings: &[&str]) -> bool {

@@ -21,6 +21,7 @@ mod python_wheel;
 mod readme;
 mod step;
 mod tables;
+mod words;
 
 const HELP: &str = "\
 usage: cargo xtask COMMAND

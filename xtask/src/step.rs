@@ -135,6 +135,16 @@ fn shown(command: &Command) -> String {
     words.map(|word| word.to_string_lossy()).collect::<Vec<_>>().join(" ")
 }
 
+/// Files of the workspace at `root` that Git knows or would add, by their paths below it.
+pub(crate) fn tracked_files(root: &Path) -> Result<Vec<String>, StepError> {
+    let mut git = Command::new("git");
+    git.args(["ls-files", "--cached", "--others", "--exclude-standard"]).current_dir(root);
+    // One that was deleted, and is not yet committed, is listed as well.
+    let listed = output_of(git)?;
+    let paths = listed.lines().filter(|path| root.join(path).is_file());
+    Ok(paths.map(str::to_owned).collect())
+}
+
 /// What `cargo metadata` says of our crates.
 pub(crate) fn metadata(root: &Path) -> Result<serde_json::Value, StepError> {
     json_of(cargo(root, "metadata --format-version 1 --no-deps --offline"))
