@@ -1,9 +1,9 @@
 //! `cargo xtask count`: how large the project is, by the numbers that a change can be held to.
 //!
 //! A source line is one of Rust, Python, C, C++, GLSL, HLSL, OSL or WGSL that holds more than space
-//! and comment. Left out: tests (folders `tests`, modules under `#[cfg(test)]`), benches and
-//! examples, documentation (comments, docstrings), and what is generated (the measured tables,
-//! the C header).
+//! and comment. Left out: tests (folders `tests`, files `tests.rs`, modules under `#[cfg(test)]`),
+//! benches and examples, documentation (comments, docstrings), and what is generated (the measured
+//! tables, the C header).
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -69,6 +69,7 @@ fn source_files(root: &Path) -> Result<Vec<PathBuf>, StepError> {
     let is_source = |path: &&String| {
         !GENERATED.iter().any(|generated| path.starts_with(generated))
             && !path.split('/').any(|part| LEFT_OUT_FOLDERS.contains(&part))
+            && !path.ends_with("/tests.rs")
     };
     Ok(tracked_files(root)?.iter().filter(is_source).map(|path| root.join(path)).collect())
 }

@@ -22,7 +22,7 @@ fn main() -> ExitCode {
 fn keep_quiet_about_damaged_files() {
     let speak = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
-        if !upglow_image::is_unpacking() {
+        if !upglow_image::ExrReader::is_unpacking() {
             speak(panic);
         }
     }));

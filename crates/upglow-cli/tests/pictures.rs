@@ -8,16 +8,15 @@ use std::path::Path;
 use serde_json::Value;
 use support::{Folder, one_line};
 use upglow_color::RgbSpace;
-use upglow_image::{Attributes, ExrDescription, ExrWriter, Sample, chromaticities};
+use upglow_image::{ExrDescription, ExrWriter, Sample};
 
 /// A picture of float samples; `says` whether it is in ACEScg.
 fn picture(folder: &Folder, name: &str, width: usize, rgb: &[[f32; 3]], says: bool) {
-    let space = || ("chromaticities".to_owned(), chromaticities(&RgbSpace::default()));
-    let described = ExrDescription {
-        sample: Sample::Float,
-        attributes: says.then(space).into_iter().collect::<Attributes>(),
-        ..ExrDescription::new([width, rgb.len() / width], ["R", "G", "B"])
-    };
+    let size = [width, rgb.len() / width];
+    let mut described = ExrDescription::new(size, ["R", "G", "B"]).with_sample(Sample::Float);
+    if says {
+        described = described.with_space(&RgbSpace::default());
+    }
     let path = folder.path().join(name);
     std::fs::create_dir_all(path.parent().unwrap()).unwrap();
     let mut writer = ExrWriter::create(&path, described).unwrap();

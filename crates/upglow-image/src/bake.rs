@@ -2,38 +2,43 @@
 
 mod attributes;
 mod compact;
+mod maker;
 mod material;
 pub(crate) mod material_picture;
 mod radiance;
 pub(crate) mod repair;
 mod spectral;
 
-use std::fmt::Debug;
 use std::path::Path;
 
 use rayon::prelude::*;
 use upglow::{Cube, LookupError, Model};
 use upglow_color::{Grid, Illuminant, LinearRgb};
-use upglow_fit::{FitOptionsError, Progress, StandingTable, Watch};
+use upglow_fit::{FitOptionsError, StandingTable, Stopped, Watch};
 
 use self::compact::CompactMaker;
+use self::maker::Maker;
 use self::material::MaterialMaker;
 use self::radiance::RadianceMaker;
+use self::repair::{Repair, Repairer, greatest_value};
 use self::spectral::SpectralMaker;
-use crate::bake::repair::{Repair, greatest_value};
-use crate::exr::attribute::Attributes;
 use crate::exr::header::Sample;
-use crate::exr::writer::{Compression, ExrDescription, ExrWriter, WriteExrError};
+use crate::exr::reader::ExrReader;
+use crate::exr::writer::{ExrDescription, ExrWriter, WriteExrError};
+use crate::picture::Picture;
 use crate::picture::band::Band;
-use crate::picture::linear::{Assumed, LinearPicture, LinearPictureError};
-use crate::picture::{Picture, PictureError};
-use crate::spectral::compact::CompactError;
+use crate::picture::error::PictureError;
+use crate::picture::linear::{Assumed, LinearPicture};
+use crate::spectral::error::FormError;
 
 /// What becomes of each texel.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Form {
-    /// The parameters of one material.
-    Material(MaterialWay),
+    /// The parameters of one material, moved until it shows the color, where one material can.
+    Material,
+    /// The parameters of one material, interpolated and no more.
+    InterpolatedMaterial,
     /// Reflectance in bands, and re-radiation between them.
     Spectral {
         /// The wavelengths at the middle of the bands.
@@ -48,13 +53,11 @@ pub enum Form {
     },
 }
 
-/// How one material is made of the four around a color.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum MaterialWay {
-    /// Moved until it shows the color, where one material can.
-    Polished,
-    /// Parameters interpolated, no more.
-    Interpolated,
+impl Form {
+    /// The form of a baked file, as it says itself: material, spectral or radiance.
+    pub fn stated(reader: &ExrReader) -> Option<&str> {
+        reader.attributes().get(attributes::FORM)?.as_text()
+    }
 }
 
 /// How pictures are read and files are written.
@@ -88,10 +91,7 @@ pub struct Baked {
 pub enum BakeError {
     /// The picture cannot be read, or nobody says what its numbers mean.
     #[error(transparent)]
-    Picture(#[from] LinearPictureError),
-    /// The picture is damaged further down.
-    #[error(transparent)]
-    Rows(#[from] PictureError),
+    Picture(#[from] PictureError),
     /// The cube records a slope limit that no fit can keep.
     #[error(transparent)]
     Options(#[from] FitOptionsError),
@@ -103,7 +103,7 @@ pub enum BakeError {
     },
     /// The cube's dyes have no compact form.
     #[error(transparent)]
-    Compact(#[from] CompactError),
+    Compact(#[from] FormError),
     /// A texel has no material.
     #[error("texel {x},{y}{}", and_others(*.others))]
     Texel {
@@ -120,8 +120,8 @@ pub enum BakeError {
     #[error(transparent)]
     Write(#[from] WriteExrError),
     /// The watcher stopped the work.
-    #[error("stopped")]
-    Stopped,
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
 }
 
 fn and_others(count: usize) -> String {
@@ -129,36 +129,6 @@ fn and_others(count: usize) -> String {
         0 => String::new(),
         count => format!(", and {count} more in the same rows"),
     }
-}
-
-/// The form of a baked file, by its attributes: material, spectral or radiance.
-pub fn baked_form(attributes: &Attributes) -> Option<&str> {
-    attributes.get(attributes::FORM)?.as_text()
-}
-
-/// Makes the channels of one form from linear RGB in the cube's space, each component in 0..=1.
-trait Maker: Debug + Sync {
-    /// Names, in the order in which planes are filled.
-    fn channels(&self) -> Vec<String>;
-
-    /// What the file says besides.
-    fn attributes(&self) -> Attributes;
-
-    fn compression(&self) -> Compression;
-
-    /// Whether the channels are light, which OpenEXR has multiplied by alpha, and not properties of
-    /// a material.
-    fn is_light(&self) -> bool {
-        false
-    }
-
-    /// The kind of number that holds the channels, where the caller asked for `asked`.
-    fn sample(&self, asked: Sample) -> Sample {
-        asked
-    }
-
-    /// Fills one row of each channel, `[channel][texel]`.
-    fn fill(&self, rgb: &[[f32; 3]], planes: &mut [&mut [f32]]);
 }
 
 /// Bakes pictures with one cube into one form.
@@ -185,7 +155,10 @@ impl<'c> Baker<'c> {
     /// [`BakeError`] if the cube has no such form.
     pub fn new(cube: &'c Cube, form: Form, options: BakeOptions) -> Result<Self, BakeError> {
         let maker: Box<dyn Maker + 'c> = match (form, cube.model()) {
-            (Form::Material(way), _) => Box::new(MaterialMaker::new(cube, way, options.sample)?),
+            (Form::Material, _) => Box::new(MaterialMaker::new(cube, true, options.sample)?),
+            (Form::InterpolatedMaterial, _) => {
+                Box::new(MaterialMaker::new(cube, false, options.sample)?)
+            }
             (Form::Spectral { grid, compact: false }, _) => {
                 Box::new(SpectralMaker::new(cube, grid))
             }
@@ -213,49 +186,50 @@ impl<'c> Baker<'c> {
     pub fn bake(&self, input: &Path, output: &Path, watch: &dyn Watch) -> Result<Baked, BakeError> {
         let mut picture = self.open(input)?;
         let size = picture.picture().size();
-        let mending = self.mending(input, watch)?;
+        let table = self.options.repair.map(|_| StandingTable::new(self.cube.contract()));
+        let repairer = match (self.options.repair, &table) {
+            (Some(repair), Some(table)) => Some(self.repairer(repair, table, input, watch)?),
+            _ => None,
+        };
         let mut writer = ExrWriter::create(output, self.description(picture.picture()))?;
         let mut baked = Baked { size, channels: 0, repaired: 0, bytes: 0 };
-        while let Some(mut band) = picture.read_band(self.band_rows(size[0]))? {
-            if watch.stopped() {
-                return Err(BakeError::Stopped);
+        picture.for_each_band(self.band_rows(size[0]), "baking", watch, |mut band| {
+            match &repairer {
+                Some(repairer) => baked.repaired += repairer.repair(&mut band.rgb).changed,
+                None => refuse_outside(&band, self.cube)?,
             }
-            baked.repaired += mending.mend(&mut band, self.cube)?;
             let planes = self.planes(&band);
             baked.channels = planes.len();
             writer.write_band(&planes.iter().map(Vec::as_slice).collect::<Vec<_>>())?;
-            let done = band.first_row + band.rows();
-            watch.progress(Progress { stage: "baking", done, total: size[1] });
-        }
+            Ok::<_, BakeError>(())
+        })?;
         baked.bytes = writer.finish()?;
         Ok(baked)
     }
 
     /// A picture whose rows come in the cube's RGB space.
-    fn open(&self, input: &Path) -> Result<LinearPicture, LinearPictureError> {
+    fn open(&self, input: &Path) -> Result<LinearPicture, PictureError> {
         let mut picture = LinearPicture::open(input, &self.options.assumed)?;
         picture.convert_to(self.cube.contract());
         Ok(picture)
     }
 
-    /// What is done with texels outside the cube; one way must read the whole picture first.
-    fn mending(&self, input: &Path, watch: &dyn Watch) -> Result<Mending, BakeError> {
-        let Some(repair) = self.options.repair else { return Ok(Mending::Refuse) };
+    /// What repairs texels outside the cube; one repair must read the whole picture first.
+    fn repairer<'t>(
+        &self,
+        repair: Repair,
+        table: &'t StandingTable,
+        input: &Path,
+        watch: &dyn Watch,
+    ) -> Result<Repairer<'t>, BakeError> {
         let mut greatest = 0.0_f32;
         if repair.reads_all_first() {
-            let mut picture = self.open(input)?;
-            let [_, total] = picture.picture().size();
-            while let Some(band) = picture.read_band(BAND_ROWS)? {
-                if watch.stopped() {
-                    return Err(BakeError::Stopped);
-                }
+            self.open(input)?.for_each_band(BAND_ROWS, "measuring", watch, |band| {
                 greatest = greatest.max(greatest_value(&band.rgb));
-                let done = band.first_row + band.rows();
-                watch.progress(Progress { stage: "measuring", done, total });
-            }
+                Ok::<_, BakeError>(())
+            })?;
         }
-        let table = StandingTable::new(self.cube.contract());
-        Ok(Mending::Repair { repair, greatest, table: Box::new(table) })
+        Ok(Repairer { repair, greatest, table })
     }
 
     /// The channels of a band, alpha last.
@@ -302,24 +276,6 @@ impl<'c> Baker<'c> {
     fn band_rows(&self, width: usize) -> usize {
         let row_bytes = size_of::<f32>() * width * self.channels.len();
         (BAND_BYTES / row_bytes.max(1)).clamp(1, BAND_ROWS)
-    }
-}
-
-/// What is done with texels outside the cube.
-enum Mending {
-    Refuse,
-    Repair { repair: Repair, greatest: f32, table: Box<StandingTable> },
-}
-
-impl Mending {
-    /// Leaves only colors of the cube; how many texels it changed.
-    fn mend(&self, band: &mut Band, cube: &Cube) -> Result<u64, BakeError> {
-        match self {
-            Self::Refuse => refuse_outside(band, cube).map(|()| 0),
-            Self::Repair { repair, greatest, table } => {
-                Ok(repair.of(*greatest, table).repair(&mut band.rgb).changed)
-            }
-        }
     }
 }
 

@@ -1,220 +1,197 @@
 //! What a picture asks of materials, before anything is baked.
 
+mod cube_match;
 mod display;
+mod findings;
 mod html;
-mod judge;
+mod limits;
 mod maps;
-mod opinion;
 mod palette;
 mod ranking;
 mod raster;
-mod tally;
+mod report;
+
+use std::path::Path;
 
 use rayon::prelude::*;
+use upglow::Cube;
+use upglow_color::{Contract, Grid, LinearRgb};
+use upglow_fit::{StandingTable, Stopped, Watch};
 
-use display::Display;
-pub use html::{CheckedPicture, check_page};
-pub use judge::{Judge, JudgeError};
-use maps::Maps;
-pub use opinion::CubeOpinion;
-pub use raster::Raster;
-use tally::Tally;
-pub use tally::{Counts, Flaw, Located};
-use upglow_color::{LinearRgb, Standing};
+use self::display::Display;
+use self::findings::{Candidate, Findings};
+use self::limits::Limits;
+use self::maps::Maps;
+use crate::picture::error::PictureError;
+use crate::picture::linear::{Assumed, LinearPicture};
 
-/// Takes a picture by bands of rows, and says what each texel needs.
+pub use self::cube_match::CubeMatch;
+pub use self::report::{CheckReport, Counts, Flaw, FlawedTexel, WorstTexel};
+
+/// Says of pictures what each texel needs.
 ///
-/// Memory is bounded: it holds two pictures of at most [`Checker::LONGER_SIDE`] pixels a side and
-/// a few texels. The result does not depend on the bands or the number of threads.
+/// A picture is read by bands of rows: memory is bounded, for two maps of at most 1024 pixels a side
+/// and a few texels. A report depends neither on the bands nor on the number of threads.
 ///
 /// # Examples
 ///
-/// ```
+/// ```no_run
 /// use upglow_color::Contract;
-/// use upglow_image::Judge;
+/// use upglow_fit::Unwatched;
+/// use upglow_image::{Assumed, Checker};
 ///
-/// let judge = Judge::new(&Contract::default());
-/// let mut checker = judge.checker(3, 1)?;
-/// checker.add(0, &[[0.5, 0.4, 0.3], [0.9, 0.0, 0.9], [0.0, 1.0, 0.0]])?;
-/// let report = checker.finish()?;
-/// assert_eq!(report.counts.reflectance, 1);
-/// assert_eq!(report.counts.needs_fluorescence, 1);
-/// assert_eq!(report.counts.unreachable, 1);
+/// let mut checker = Checker::new(Contract::default(), Assumed::default());
+/// let report = checker.check("wall.exr".as_ref(), &Unwatched)?;
+/// println!("{} texels need fluorescence", report.counts.needs_fluorescence);
 /// # Ok::<(), upglow_image::CheckError>(())
 /// ```
 #[derive(Debug)]
-pub struct Checker<'a> {
-    judge: &'a Judge,
-    width: usize,
-    height: usize,
-    rows_seen: usize,
-    maps: Maps,
-    tally: Tally,
+pub struct Checker<'c> {
+    contract: Contract,
+    assumed: Assumed,
+    /// A cube and its file.
+    cube: Option<(&'c Cube, String)>,
+    /// For each RGB space: what one picture has found out serves the next too.
+    known: Vec<Limits>,
 }
 
-/// Why rows are not the rows of a picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+/// Why a picture is not checked.
+#[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CheckError {
-    /// The picture has no texels.
-    #[error("a picture of {width} × {height} texels, expected at least 1 × 1")]
-    Size {
-        /// Texels in a row.
-        width: usize,
-        /// Rows.
-        height: usize,
-    },
-    /// A band does not follow the one before.
-    #[error("a band from row {found}, expected row {expected}")]
-    Row {
-        /// The band's first row.
-        found: usize,
-        /// The row that comes next.
-        expected: usize,
-    },
-    /// A band does not hold whole rows.
-    #[error("{found} texels, expected whole rows of {width}")]
-    Length {
-        /// Texels of the band.
-        found: usize,
-        /// Texels in a row.
-        width: usize,
-    },
-    /// There are too many or too few rows.
-    #[error("{found} rows, expected {expected}")]
-    Rows {
-        /// Rows given.
-        found: usize,
-        /// Rows of the picture.
-        expected: usize,
-    },
+    /// The picture cannot be read, or nobody says what its numbers mean.
+    #[error(transparent)]
+    Picture(#[from] PictureError),
+    /// The cube was built for another contract.
+    #[error("the cube was built for another RGB space, light, observer or adaptation")]
+    Contract,
+    /// The watcher stopped the work.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
 }
 
-/// What a picture asks of materials.
-#[derive(Clone, Debug, PartialEq)]
-pub struct CheckReport {
-    /// Texels in a row.
-    pub width: usize,
-    /// Rows.
-    pub height: usize,
-    /// How many texels need what, and how many have values that no cube holds.
-    pub counts: Counts,
-    /// The first texels of each flaw, in reading order.
-    pub located: Vec<Located>,
-    /// The texels furthest beyond any material, then furthest beyond reflectance; at most
-    /// [`Checker::WORST`], no two of nearly the same color.
-    pub worst: Vec<WorstTexel>,
-    /// How well a cube's materials show the picture, if a cube was asked.
-    pub cube: Option<CubeOpinion>,
-    /// Where the picture needs what.
-    pub heat: Raster,
-    /// The picture as sRGB shows it.
-    pub thumbnail: Raster,
-}
+/// Rows that are read at a time: enough to keep every core busy.
+const BAND_ROWS: usize = 64;
 
-/// A texel that a reflectance does not show.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WorstTexel {
-    /// Column, from 0 at the left.
-    pub x: usize,
-    /// Row, from 0 at the top.
-    pub y: usize,
-    /// Its color, linear RGB of the contract's space.
-    pub rgb: [f32; 3],
-    /// What it takes to show it, and how far it is from what materials show.
-    pub standing: Standing,
-    /// The color asked for, the nearest of a reflectance, and the nearest of any material, in sRGB.
-    pub swatches: [[u8; 3]; 3],
-}
-
-impl Judge {
-    /// A checker for a picture of this size.
-    ///
-    /// # Errors
-    ///
-    /// [`CheckError::Size`] if it has no texels.
-    pub fn checker(&self, width: usize, height: usize) -> Result<Checker<'_>, CheckError> {
-        if width == 0 || height == 0 {
-            return Err(CheckError::Size { width, height });
-        }
-        let maps = Maps::new(width, height);
-        Ok(Checker { judge: self, width, height, rows_seen: 0, maps, tally: Tally::default() })
-    }
-}
-
-impl Checker<'_> {
-    /// Greatest width and height of the pictures in a report.
-    pub const LONGER_SIDE: usize = 1024;
-
+impl<'c> Checker<'c> {
     /// Greatest number of worst texels in a report.
     pub const WORST: usize = 10;
 
-    /// Takes the next rows: linear RGB of the contract's space, row by row.
-    ///
-    /// # Errors
-    ///
-    /// [`CheckError`] if they do not follow the rows before, are not whole rows, or are more than
-    /// the picture has; nothing is taken then.
-    pub fn add(&mut self, first_row: usize, rgb: &[[f32; 3]]) -> Result<(), CheckError> {
-        if first_row != self.rows_seen {
-            return Err(CheckError::Row { found: first_row, expected: self.rows_seen });
-        }
-        if !rgb.len().is_multiple_of(self.width) {
-            return Err(CheckError::Length { found: rgb.len(), width: self.width });
-        }
-        let rows = first_row + rgb.len() / self.width;
-        if rows > self.height {
-            return Err(CheckError::Rows { found: rows, expected: self.height });
-        }
-        let judge = self.judge;
-        let found = self.maps.tiles(first_row, rgb).map(|tile| tile.judge(judge));
-        let found = found.reduce(Tally::default, Tally::with);
-        self.tally = std::mem::take(&mut self.tally).with(found);
-        self.rows_seen = rows;
-        Ok(())
+    /// Checks each picture in its own RGB space, under the light, the observer and the adaptation of
+    /// `contract`.
+    #[must_use]
+    pub fn new(contract: Contract, assumed: Assumed) -> Self {
+        Self { contract, assumed, cube: None, known: Vec::new() }
     }
 
-    /// The report.
+    /// Checks pictures in the RGB space of `cube`, and how well its mixtures show each texel. Reports
+    /// call it `file`.
     ///
     /// # Errors
     ///
-    /// [`CheckError::Rows`] if rows are missing.
-    pub fn finish(self) -> Result<CheckReport, CheckError> {
-        if self.rows_seen < self.height {
-            return Err(CheckError::Rows { found: self.rows_seen, expected: self.height });
+    /// [`CheckError::Contract`] if it was built for another contract.
+    pub fn with_cube(mut self, cube: &'c Cube, file: String) -> Result<Self, CheckError> {
+        self.contract.space = cube.contract().space.clone();
+        if cube.contract().on(Grid::FIT) != self.contract.on(Grid::FIT) {
+            return Err(CheckError::Contract);
         }
-        let display = Display::new(self.judge);
-        Ok(CheckReport {
-            width: self.width,
-            height: self.height,
-            counts: self.tally.counts,
-            located: self.tally.located(),
-            worst: worst(self.judge, &display, &self.tally),
-            cube: self.judge.has_cube().then(|| self.tally.opinion.finish()),
-            heat: self.maps.heat(&display),
-            thumbnail: self.maps.thumbnail(&display),
+        self.cube = Some((cube, file));
+        Ok(self)
+    }
+
+    /// What the picture at `input` asks of materials, found on all threads of the current rayon pool.
+    ///
+    /// # Errors
+    ///
+    /// [`CheckError`] if it cannot be read or the watcher stops.
+    pub fn check(&mut self, input: &Path, watch: &dyn Watch) -> Result<CheckReport, CheckError> {
+        let mut picture = LinearPicture::open(input, &self.assumed)?;
+        let size = picture.picture().size();
+        let limits = self.limits(&picture);
+        let limits = &self.known[limits];
+        picture.convert_to(&limits.contract);
+        let mut pass = Pass::new(limits, size);
+        picture.for_each_band(BAND_ROWS, "checking", watch, |band| {
+            pass.add(band.first_row, &band.rgb);
+            Ok::<_, CheckError>(())
+        })?;
+        let cube_file = self.cube.as_ref().map(|(_, file)| file.as_str());
+        Ok(pass.finish(input.display().to_string(), cube_file))
+    }
+
+    /// The number of the limits for a picture: in the cube's RGB space, or in the picture's own.
+    fn limits(&mut self, picture: &LinearPicture) -> usize {
+        let mut contract = self.contract.clone();
+        if self.cube.is_none() {
+            contract.space = picture.space().clone();
+        }
+        let known = self.known.iter().position(|limits| limits.contract == contract);
+        known.unwrap_or_else(|| {
+            let cube = self.cube.as_ref().map(|(cube, _)| *cube);
+            self.known.push(Limits::new(contract, cube));
+            self.known.len() - 1
         })
+    }
+}
+
+/// A picture whose rows pass once, from top to bottom.
+struct Pass<'a> {
+    limits: &'a Limits,
+    size: [usize; 2],
+    maps: Maps,
+    findings: Findings,
+}
+
+impl<'a> Pass<'a> {
+    fn new(limits: &'a Limits, size: [usize; 2]) -> Self {
+        Self { limits, size, maps: Maps::new(size), findings: Findings::default() }
+    }
+
+    /// Takes whole rows of linear RGB in the contract's space.
+    fn add(&mut self, first_row: usize, rgb: &[[f32; 3]]) {
+        let limits = self.limits;
+        let found = self.maps.tiles(first_row, rgb).map(|tile| tile.check(limits));
+        let found = found.reduce(Findings::default, Findings::with);
+        self.findings = std::mem::take(&mut self.findings).with(found);
+    }
+
+    fn finish(self, file: String, cube_file: Option<&str>) -> CheckReport {
+        let Self { limits, size: [width, height], maps, findings } = self;
+        let display = Display::new(limits.table.colorimetry());
+        CheckReport {
+            file,
+            width,
+            height,
+            rgb_space: limits.contract.space.name().into(),
+            illuminant: limits.contract.illuminant.name().into(),
+            counts: findings.counts,
+            flaws: findings.flaws(),
+            worst: worst(&limits.table, &display, &findings),
+            cube: cube_file.map(|file| findings.differences.finish(file)),
+            heat: maps.heat(&display),
+            thumbnail: maps.thumbnail(&display),
+        }
     }
 }
 
 /// Measures the candidates, which were ranked by estimates, and keeps the worst.
-fn worst(judge: &Judge, display: &Display, tally: &Tally) -> Vec<WorstTexel> {
-    let candidates = tally.worst.found();
+fn worst(table: &StandingTable, display: &Display, findings: &Findings) -> Vec<WorstTexel> {
+    let candidates = findings.worst.found();
     let mut all: Vec<_> = candidates
         .par_iter()
-        .map(|candidate| {
-            let rgb = LinearRgb(candidate.rgb.map(f64::from));
-            let standing = judge.table().standing(rgb);
-            let asked = judge.table().colorimetry().xyz_from_rgb(rgb);
-            let nearest = [standing.reflectance.color, standing.fluorescence.color];
-            let swatches = [asked, nearest[0], nearest[1]].map(|xyz| display.srgb(xyz));
-            let (x, y) = candidate.place();
-            WorstTexel { x, y, rgb: candidate.rgb, standing, swatches }
+        .map(|&Candidate { x, y, rgb, .. }| {
+            let color = LinearRgb(rgb.map(f64::from));
+            let standing = table.standing(color);
+            let asked = table.colorimetry().xyz_from_rgb(color);
+            let swatches = [asked, standing.reflectance.color, standing.fluorescence.color]
+                .map(|xyz| display.srgb(xyz));
+            WorstTexel { x, y, rgb, standing, swatches }
         })
         .collect();
-    let beyond = |t: &WorstTexel| t.standing.beyond().distance;
     all.sort_by(|a, b| {
-        let worse = b.standing.kind.cmp(&a.standing.kind).then(beyond(b).total_cmp(&beyond(a)));
+        let [worse, better] = [b.standing, a.standing];
+        let [far, near] = [worse, better].map(|standing| standing.beyond().distance);
+        let worse = worse.kind.cmp(&better.kind).then(far.total_cmp(&near));
         worse.then((a.y, a.x).cmp(&(b.y, b.x)))
     });
     all.truncate(Checker::WORST);
@@ -224,7 +201,7 @@ fn worst(judge: &Judge, display: &Display, tally: &Tally) -> Vec<WorstTexel> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use upglow_color::{Contract, LinearRgb, StandingKind};
+    use upglow_color::{Contract, LinearRgb, Standing, StandingKind};
 
     const WIDTH: usize = 61;
     const HEIGHT: usize = 47;
@@ -245,25 +222,25 @@ mod tests {
         (0..WIDTH * HEIGHT).map(texel).collect()
     }
 
-    fn judge() -> Judge {
-        Judge::new(&Contract::default())
+    fn limits() -> Limits {
+        Limits::new(Contract::default(), None)
     }
 
-    fn report(judge: &Judge, rgb: &[[f32; 3]], rows_at_once: usize) -> CheckReport {
-        let mut checker = judge.checker(WIDTH, HEIGHT).unwrap();
+    fn report(limits: &Limits, rgb: &[[f32; 3]], rows_at_once: usize) -> CheckReport {
+        let mut pass = Pass::new(limits, [WIDTH, HEIGHT]);
         for (i, band) in rgb.chunks(rows_at_once * WIDTH).enumerate() {
-            checker.add(i * rows_at_once, band).unwrap();
+            pass.add(i * rows_at_once, band);
         }
-        checker.finish().unwrap()
+        pass.finish("<script>alert('&\u{1}')</script>\".exr".into(), None)
     }
 
     #[test]
     fn the_report_is_the_same_for_any_bands_and_threads() {
         let rgb = picture();
-        let whole = report(&judge(), &rgb, HEIGHT);
+        let whole = report(&limits(), &rgb, HEIGHT);
         for (rows, threads) in [(1, 1), (5, 2), (16, 3)] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            let found = pool.install(|| report(&judge(), &rgb, rows));
+            let found = pool.install(|| report(&limits(), &rgb, rows));
             assert!(found == whole, "{rows} rows at once, {threads} threads");
         }
     }
@@ -271,7 +248,7 @@ mod tests {
     #[test]
     fn each_texel_counts_for_what_it_needs() {
         let rgb = picture();
-        let found = report(&judge(), &rgb, 7).counts;
+        let found = report(&limits(), &rgb, 7).counts;
         let finite = rgb.iter().filter(|t| t.iter().all(|v| v.is_finite()));
         let table = upglow_fit::StandingTable::new(&Contract::default());
         let standings: Vec<Standing> =
@@ -288,12 +265,12 @@ mod tests {
     #[test]
     fn flawed_values_are_counted_and_the_first_are_located() {
         let rgb = picture();
-        let found = report(&judge(), &rgb, HEIGHT);
+        let found = report(&limits(), &rgb, HEIGHT);
         for flaw in Flaw::ALL {
             let flawed: Vec<usize> = (0..rgb.len()).filter(|&i| flaw.is_in(rgb[i])).collect();
             assert_eq!(found.counts.of(flaw), flawed.len() as u64, "{flaw:?}");
             let places: Vec<usize> = found
-                .located
+                .flaws
                 .iter()
                 .filter(|texel| texel.flaw == flaw)
                 .map(|texel| texel.y * WIDTH + texel.x)
@@ -307,11 +284,10 @@ mod tests {
     #[test]
     fn the_worst_texel_is_the_worst_and_no_two_are_alike() {
         let rgb = picture();
-        let judge = judge();
-        let found = report(&judge, &rgb, HEIGHT).worst;
-        let distance = |t: &[f32; 3]| {
-            judge.table().standing(LinearRgb(t.map(f64::from))).fluorescence.distance
-        };
+        let limits = limits();
+        let found = report(&limits, &rgb, HEIGHT).worst;
+        let distance =
+            |t: &[f32; 3]| limits.table.standing(LinearRgb(t.map(f64::from))).fluorescence.distance;
         let finite = rgb.iter().filter(|t| t.iter().all(|v| v.is_finite()));
         let greatest = finite.map(distance).fold(0.0, f64::max);
         assert_eq!(found.len(), Checker::WORST);
@@ -326,16 +302,16 @@ mod tests {
 
     #[test]
     fn maps_are_small_and_show_each_kind_in_its_color() {
-        let judge = judge();
-        let mut checker = judge.checker(5000, 3).unwrap();
+        let limits = limits();
+        let mut pass = Pass::new(&limits, [5000, 3]);
         let mut rgb = vec![[0.2; 3]; 15_000];
         rgb[0] = [f32::NAN; 3];
         rgb[7505] = [0.0, 1.0, 0.0];
         rgb[2600] = [0.9, 0.0, 0.9];
-        checker.add(0, &rgb).unwrap();
-        let found = checker.finish().unwrap();
+        pass.add(0, &rgb);
+        let found = pass.finish("wide.exr".into(), None);
         assert_eq!((found.heat.width(), found.heat.height()), (1000, 1));
-        let color = |column: usize| found.heat.pixels()[column];
+        let color = |column: usize| found.heat.pixels[column];
         let [gray, broken, green, magenta] = [color(1), color(0), color(501), color(520)];
         assert!(gray[0] == gray[1] && gray[1] == gray[2]);
         // Cyan, purple and orange.
@@ -345,31 +321,14 @@ mod tests {
     }
 
     #[test]
-    fn rows_that_are_not_the_pictures_are_refused() {
-        let judge = judge();
-        assert_eq!(judge.checker(0, 4).map(|_| ()), Err(CheckError::Size { width: 0, height: 4 }));
-        let mut checker = judge.checker(2, 2).unwrap();
-        let rows = [[0.5; 3]; 6];
-        assert_eq!(checker.add(1, &rows[..2]), Err(CheckError::Row { found: 1, expected: 0 }));
-        assert_eq!(checker.add(0, &rows[..3]), Err(CheckError::Length { found: 3, width: 2 }));
-        assert_eq!(checker.add(0, &rows), Err(CheckError::Rows { found: 3, expected: 2 }));
-        checker.add(0, &rows[..2]).unwrap();
-        assert_eq!(checker.finish().unwrap_err(), CheckError::Rows { found: 1, expected: 2 });
-    }
-
-    #[test]
     fn the_page_is_well_formed_and_names_are_text() {
-        let report = report(&judge(), &picture(), HEIGHT);
-        let name = "<script>alert('&\u{1}')</script>\".exr";
-        let picture = CheckedPicture {
-            name,
-            space: "acescg",
-            light: "D65 & \"sun\"",
-            cube: None,
-            report: &report,
+        let report = CheckReport {
+            illuminant: "D65 & \"sun\"".into(),
+            ..report(&limits(), &picture(), HEIGHT)
         };
-        for pictures in [vec![picture], vec![picture; 2]] {
-            let page = check_page(&pictures);
+        let name = report.file.clone();
+        for pictures in [vec![report.clone()], vec![report.clone(); 2]] {
+            let page = CheckReport::page(&pictures);
             let options = roxmltree::ParsingOptions { allow_dtd: true, ..Default::default() };
             let document = roxmltree::Document::parse_with_options(&page, options).unwrap();
             let named = |tag| document.descendants().filter(move |n| n.tag_name().name() == tag);
@@ -389,18 +348,20 @@ mod tests {
         let contract = Contract::default();
         let model = Model::Dyes(model);
         let cube = build_cube(&contract, &model, FitOptions::default(), 3, &Unwatched).unwrap();
-        let judge = Judge::new(&contract).with_cube(&cube).unwrap();
+        let limits = Limits::new(contract.clone(), Some(&cube));
         let nodes = cube.nodes().len();
         let rgb: Vec<[f32; 3]> =
             (0..nodes).map(|i| cube.coordinates(i).map(|k| k as f32 / 2.0)).collect();
-        let mut checker = judge.checker(nodes, 1).unwrap();
-        checker.add(0, &rgb).unwrap();
-        let found = checker.finish().unwrap().cube.unwrap();
+        let mut pass = Pass::new(&limits, [nodes, 1]);
+        pass.add(0, &rgb);
+        let found = pass.finish("nodes.exr".into(), Some("cube")).cube.unwrap();
         let stored = cube.nodes().iter().map(|node| f64::from(node.de2000));
         assert_eq!(found.texels, nodes as u64);
         // Single precision, where a small XYZ is magnified by ΔE00.
-        assert!((found.greatest - stored.fold(0.0, f64::max)).abs() < 0.01, "{found:?}");
+        let miss = (found.greatest_de2000 - stored.fold(0.0, f64::max)).abs();
+        assert!(miss < 0.01, "{found:?}");
         let other = Contract { adaptation: upglow_color::Adaptation::None, ..contract };
-        assert!(matches!(Judge::new(&other).with_cube(&cube), Err(JudgeError::Contract)));
+        let refused = Checker::new(other, Assumed::default()).with_cube(&cube, "cube".into());
+        assert!(matches!(refused, Err(CheckError::Contract)));
     }
 }

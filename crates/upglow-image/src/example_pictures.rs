@@ -14,34 +14,33 @@ pub struct ExamplePicture {
     color: fn([f64; 2]) -> [f64; 3],
 }
 
-/// All of them.
-pub const EXAMPLE_PICTURES: [ExamplePicture; 3] = [
-    ExamplePicture {
-        name: "pool",
-        about: "tiles of a swimming pool, with a ring of ACEScg (0.9, 0, 0.9) that no reflectance shows",
-        size: [512, 512],
-        color: pool,
-    },
-    ExamplePicture {
-        name: "chart",
-        about: "twelve hues, from gray to the edge of ACEScg, and twelve grays",
-        size: [576, 384],
-        color: chart,
-    },
-    ExamplePicture {
-        name: "dusk",
-        about: "an evening sky with lamps: smooth gradients of wide-gamut colors, as in a photograph",
-        size: [768, 432],
-        color: dusk,
-    },
-];
-
 impl ExamplePicture {
+    /// All of them.
+    pub const ALL: [Self; 3] = [
+        Self {
+            name: "pool",
+            about: "tiles of a swimming pool, with a ring of ACEScg (0.9, 0, 0.9) that no reflectance shows",
+            size: [512, 512],
+            color: pool,
+        },
+        Self {
+            name: "chart",
+            about: "twelve hues, from gray to the edge of ACEScg, and twelve grays",
+            size: [576, 384],
+            color: chart,
+        },
+        Self {
+            name: "dusk",
+            about: "an evening sky with lamps: smooth gradients of wide-gamut colors, as in a photograph",
+            size: [768, 432],
+            color: dusk,
+        },
+    ];
+
     /// The color of a texel, from the upper left.
     pub fn texel(&self, [x, y]: [usize; 2]) -> [f32; 3] {
-        let place =
-            [(x as f64 + 0.5) / self.size[0] as f64, (y as f64 + 0.5) / self.size[1] as f64];
-        (self.color)(place).map(to_single)
+        let at = [(x as f64 + 0.5) / self.size[0] as f64, (y as f64 + 0.5) / self.size[1] as f64];
+        (self.color)(at).map(to_single)
     }
 
     /// All texels of a row.
@@ -107,7 +106,7 @@ fn hue(turn: f64) -> [f64; 3] {
     [channel(0.0), channel(1.0 / 3.0), channel(2.0 / 3.0)]
 }
 
-/// From 0 to 1 between two places, smoothly.
+/// From 0 to 1 between two numbers, smoothly.
 fn step(from: f64, to: f64, at: f64) -> f64 {
     let t = ((at - from) / (to - from)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
@@ -134,7 +133,7 @@ mod tests {
 
     #[test]
     fn every_texel_is_a_color_of_the_cube() {
-        for picture in EXAMPLE_PICTURES {
+        for picture in ExamplePicture::ALL {
             for y in 0..picture.size[1] {
                 let row = picture.row(y);
                 assert!(row.as_flattened().iter().all(|v| (0.0..=1.0).contains(v)));
@@ -144,7 +143,7 @@ mod tests {
 
     #[test]
     fn the_pool_has_its_ring() {
-        let pool = EXAMPLE_PICTURES[0];
+        let pool = ExamplePicture::ALL[0];
         assert_eq!(pool.texel([256 + 153, 256]), [0.9, 0.0, 0.9]);
         assert!(pool.texel([256, 256])[2] > pool.texel([256, 256])[0]);
     }

@@ -5,6 +5,6 @@ mod blocks;
 pub(crate) mod error;
 pub(crate) mod header;
 pub(crate) mod reader;
+#[cfg(test)]
+mod tests;
 pub(crate) mod writer;
-
-pub use blocks::is_unpacking;

@@ -1,9 +1,12 @@
 //! Pictures in, spectral files out: whole textures by bands of rows, in bounded memory.
 //!
 //! - pictures: [`Picture`] reads OpenEXR, TIFF and PNG by [`Band`]s; [`Encoding`] makes them linear
+//! - before baking: [`Checker`] says what each texel needs
+//! - baking: [`Baker`] writes materials, spectra or colors under a light, by [`Form`]
+//! - baked files: [`MaterialPicture`] and [`SpectralPicture`] read texels, [`Lint`] finds faults
 //! - OpenEXR: [`ExrWriter`] writes any channels by bands, [`ExrReader`] reads any region
-//! - spectral files: [`SpectralChannel`] names, [`SpectralPicture`] texels, [`lint()`]
-//! - the compact bispectral form: [`CompactLayout`]; `docs/spectral-exr.md` describes it
+//!
+//! `docs/spectral-exr.md` and `docs/material-exr.md` describe the files.
 //!
 //! A file that is written appears whole or not at all, and the same pixels give the same bytes for
 //! any number of threads. No content of a file panics: each error is one line that says what was
@@ -40,31 +43,23 @@ mod picture;
 mod rounding;
 mod spectral;
 
-pub use bake::material_picture::{MaterialPicture, MaterialPictureError};
-pub use bake::repair::{Repair, Repaired, Repairer, greatest_value};
-pub use bake::{BakeError, BakeOptions, Baked, Baker, Form, MaterialWay, baked_form};
+pub use bake::material_picture::MaterialPicture;
+pub use bake::repair::Repair;
+pub use bake::{BakeError, BakeOptions, Baked, Baker, Form};
 pub use check::{
-    CheckError, CheckReport, CheckedPicture, Checker, Counts, CubeOpinion, Flaw, Judge, JudgeError,
-    Located, Raster, WorstTexel, check_page,
+    CheckError, CheckReport, Checker, Counts, CubeMatch, Flaw, FlawedTexel, WorstTexel,
 };
-pub use example_pictures::{EXAMPLE_PICTURES, ExamplePicture};
-pub use exr::attribute::{Attribute, Attributes};
+pub use example_pictures::ExamplePicture;
 pub use exr::error::ExrError;
-pub use exr::header::{Channel, Sample, Window};
-pub use exr::is_unpacking;
+pub use exr::header::Sample;
 pub use exr::reader::ExrReader;
 pub use exr::writer::{Compression, ExrDescription, ExrWriter, WriteExrError};
+pub use picture::Picture;
 pub use picture::band::Band;
-pub use picture::chromaticities::chromaticities;
 pub use picture::encoding::Encoding;
-pub use picture::linear::{Assumed, LinearPicture, LinearPictureError};
-pub use picture::{Alpha, Picture, PictureError};
-pub use spectral::channel::{
-    BISPECTRAL_UNIT, BispectralUnit, EMISSIVE_UNITS, LAYOUT_VERSION, LAYOUT_VERSION_VALUE,
-    SpectralChannel, SpectralNameError,
-};
-pub use spectral::compact::{
-    CompactDye, CompactError, CompactForm, CompactLayout, Donaldson, MOST_EXTRA_CHANNELS,
-};
-pub use spectral::lint::{Depth, Finding, Lint, Rule, Severity, lint};
-pub use spectral::picture::{Reradiation, SpectralPicture, SpectralPictureError, SpectralTexel};
+pub use picture::error::PictureError;
+pub use picture::linear::Assumed;
+pub use spectral::channel::BispectralUnit;
+pub use spectral::error::FormError;
+pub use spectral::lint::findings::{Finding, Lint, Severity};
+pub use spectral::picture::{SpectralPicture, SpectralTexel};

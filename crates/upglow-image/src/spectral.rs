@@ -3,5 +3,8 @@
 mod attribute_spectrum;
 pub(crate) mod channel;
 pub(crate) mod compact;
+pub(crate) mod error;
 pub(crate) mod lint;
 pub(crate) mod picture;
+#[cfg(test)]
+mod tests;

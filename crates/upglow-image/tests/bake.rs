@@ -15,12 +15,12 @@ use upglow_color::{
 };
 use upglow_fit::{CubeSummary, FitOptions, Polisher, Unwatched, build_cube};
 use upglow_image::{
-    Assumed, Attributes, BakeError, BakeOptions, Baked, Baker, Depth, EXAMPLE_PICTURES, Encoding,
-    ExrDescription, ExrReader, ExrWriter, Form, MaterialPicture, MaterialWay, Repair, Sample,
-    SpectralPicture, SpectralTexel, chromaticities, lint,
+    Assumed, BakeError, BakeOptions, Baked, Baker, Encoding, ExamplePicture, ExrDescription,
+    ExrReader, ExrWriter, Form, Lint, MaterialPicture, Repair, Sample, SpectralPicture,
+    SpectralTexel,
 };
 
-const POLISHED: Form = Form::Material(MaterialWay::Polished);
+const POLISHED: Form = Form::Material;
 
 /// Bands that programs of others use most.
 fn tens() -> Grid {
@@ -97,14 +97,9 @@ impl Desk {
     ) -> PathBuf {
         let path = self.path(name);
         let names = ["R", "G", "B", "A"][..3 + usize::from(alpha.is_some())].iter().copied();
-        let described = ExrDescription {
-            sample: Sample::Float,
-            attributes: Attributes::from([(
-                "chromaticities".to_owned(),
-                chromaticities(&RgbSpace::default()),
-            )]),
-            ..ExrDescription::new([width, rgb.len() / width], names)
-        };
+        let described = ExrDescription::new([width, rgb.len() / width], names)
+            .with_sample(Sample::Float)
+            .with_space(&RgbSpace::default());
         let mut planes = [0, 1, 2].map(|k| rgb.iter().map(|v| v[k]).collect()).to_vec();
         planes.extend(alpha.map(<[f32]>::to_vec));
         let planes: Vec<&[f32]> = planes.iter().map(Vec::as_slice).collect();
@@ -242,7 +237,7 @@ fn within_a_tetrahedron_filtering_first_or_last_gives_the_same_under_any_light()
 /// Colors of the example pictures, evenly from all over them, and random ones.
 fn many_colors() -> Vec<[f32; 3]> {
     const APART: usize = 24;
-    let pictures = EXAMPLE_PICTURES.iter().flat_map(|picture| {
+    let pictures = ExamplePicture::ALL.iter().flat_map(|picture| {
         let [width, height] = picture.size;
         let places = (0..height).step_by(APART);
         places.flat_map(move |y| (0..width).step_by(APART).map(move |x| picture.texel([x, y])))
@@ -256,8 +251,8 @@ fn half_precision_moves_no_material_by_more_than_0_3_and_none_above_the_slope_li
     let (desk, rgb) = (Desk::new(), many_colors());
     let limit = cube().fit().slope_max_per_nm.unwrap();
     let sums = ModelOnGrid::new(cube().model(), colorimetry());
-    for way in [MaterialWay::Polished, MaterialWay::Interpolated] {
-        let read = |sample| materials(&desk.baked(Form::Material(way), sample, 1, &rgb));
+    for form in [POLISHED, Form::InterpolatedMaterial] {
+        let read = |sample| materials(&desk.baked(form.clone(), sample, 1, &rgb));
         let [half, float] = [Sample::Half, Sample::Float].map(read);
         for ((rgb, half), float) in rgb.iter().zip(&half).zip(&float) {
             let found = difference(sums.color(*half), sums.color(*float));
@@ -316,7 +311,7 @@ fn color_of_bands(texel: &SpectralTexel, grid: Grid) -> Xyz {
         (0..3).for_each(|k| sum[k] += light * sums.matching()[outgoing][k]);
     };
     texel.reflectance.iter().for_each(|&(nm, share)| add(at(nm), at(nm), share));
-    texel.reradiation.iter().for_each(|r| add(at(r.in_nm), at(r.out_nm), r.value));
+    texel.reradiation.iter().for_each(|&(i, o, share)| add(at(i), at(o), share));
     Xyz(sum)
 }
 
@@ -335,7 +330,7 @@ fn compact_and_full_files_have_the_same_colors() {
         assert_eq!(full.preview, compact.preview);
         let found = difference(color_of_bands(&full, tens()), color_of_bands(&compact, tens()));
         assert!(found < BANDS_DE2000, "{found} {rgb:?}");
-        fluorescent += usize::from(full.reradiation.iter().any(|r| r.value > 0.01));
+        fluorescent += usize::from(full.reradiation.iter().any(|(.., share)| *share > 0.01));
     }
     assert!(fluorescent > 5, "{fluorescent} fluorescent texels tell little");
 }
@@ -358,10 +353,10 @@ fn a_compact_file_expands_to_the_matrix_of_the_polished_material() {
         }
         let pairs = (0..nm.len()).flat_map(|i| (i + 1..nm.len()).map(move |o| (i, o)));
         assert_eq!(texel.reradiation.len(), 820);
-        for (r, (i, o)) in texel.reradiation.iter().zip(pairs) {
-            assert_eq!((r.in_nm, r.out_nm), (nm[i], nm[o]));
-            let miss = (matrix[o][i] - f64::from(r.value)).abs();
-            assert!(miss < ROUNDING, "{miss} {r:?}");
+        for (&(in_nm, out_nm, share), (i, o)) in texel.reradiation.iter().zip(pairs) {
+            assert_eq!((in_nm, out_nm), (nm[i], nm[o]));
+            let miss = (matrix[o][i] - f64::from(share)).abs();
+            assert!(miss < ROUNDING, "{miss} {in_nm} {out_nm} {share}");
         }
     }
 }
@@ -380,9 +375,9 @@ fn a_ring_of_fourteen_dyes_expands_to_the_matrix_of_the_blend() {
         let matrix = cube.lookup(color, upglow::Interpolation::Blend).unwrap();
         let matrix = matrix.reradiation_matrix(tens());
         let at = |nm: f64| tens().wavelengths_nm().position(|band| band == nm).unwrap();
-        for r in &texel.reradiation {
-            let miss = (matrix[at(r.out_nm)][at(r.in_nm)] - f64::from(r.value)).abs();
-            assert!(miss < ROUNDING, "{miss} {r:?} {rgb:?}");
+        for &(in_nm, out_nm, share) in &texel.reradiation {
+            let miss = (matrix[at(out_nm)][at(in_nm)] - f64::from(share)).abs();
+            assert!(miss < ROUNDING, "{miss} {in_nm} {out_nm} {share} {rgb:?}");
         }
     }
 }
@@ -401,11 +396,11 @@ fn no_band_gives_back_more_than_it_got() {
     for (sample, tolerance) in tolerances {
         for compact in [false, true] {
             let path = desk.baked(spectral(tens(), compact), sample, 8, &rgb);
-            assert_eq!(lint(&path, Depth::Pixels).unwrap().findings, []);
+            assert_eq!(Lint::of_file(&path).unwrap().findings, []);
             let read = texels(&path);
             let moved = |texel: &SpectralTexel, nm: f64| -> f64 {
-                let row = texel.reradiation.iter().filter(|r| r.in_nm == nm);
-                row.map(|r| f64::from(r.value)).sum()
+                let row = texel.reradiation.iter().filter(|(in_nm, ..)| *in_nm == nm);
+                row.map(|(.., share)| f64::from(*share)).sum()
             };
             let sums = read.iter().flat_map(|texel| {
                 texel.reflectance.iter().map(|&(nm, share)| f64::from(share) + moved(texel, nm))
@@ -530,7 +525,7 @@ fn light_of_a_png_with_alpha_is_dimmed_as_openexr_has_it() {
 /// Every form, with bands that make a small file.
 fn forms() -> [Form; 5] {
     let coarse = Grid::try_new(400, 700, 50).unwrap();
-    let fast = Form::Material(MaterialWay::Interpolated);
+    let fast = Form::InterpolatedMaterial;
     [POLISHED, fast, spectral(coarse, false), spectral(coarse, true), radiance("A")]
 }
 
@@ -554,7 +549,7 @@ fn a_texel_is_the_same_wherever_the_picture_is_cut() {
         let samples = |rgb: &[[f32; 3]]| {
             let mut reader =
                 ExrReader::open(&desk.baked(form.clone(), Sample::Half, 7, rgb)).unwrap();
-            let channels: Vec<usize> = (0..reader.channels().len()).collect();
+            let channels: Vec<usize> = (0..reader.channel_names().len()).collect();
             reader.read_rows(0..rgb.len() / 7, &channels).unwrap()
         };
         let whole = samples(&rgb);

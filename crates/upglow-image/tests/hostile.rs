@@ -8,7 +8,7 @@ use exr::prelude::{
     AnyChannel, AnyChannels, Blocks, Compression, Encoding, FlatSamples, Image, Layer,
     LayerAttributes, LineOrder, Vec2, WritableImage as _, f16,
 };
-use upglow_image::{Depth, ExrDescription, ExrWriter, Picture, SpectralPicture, lint};
+use upglow_image::{ExrDescription, ExrWriter, Lint, Picture, SpectralPicture};
 
 const SIZE: [usize; 2] = [40, 37];
 
@@ -107,7 +107,7 @@ fn read_all(path: &Path) -> Result<(), String> {
         band.map_err(|e| line(&e))?;
     }
     if std::fs::read(path).unwrap().starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
-        lint(path, Depth::Pixels).map_err(|e| line(&e))?;
+        Lint::of_file(path).map_err(|e| line(&e))?;
         let mut picture = SpectralPicture::open(path).map_err(|e| line(&e))?;
         picture.at(SIZE[0] / 2, SIZE[1] / 2).map_err(|e| line(&e))?;
     }

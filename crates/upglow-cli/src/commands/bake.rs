@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use serde::Serialize;
 use upglow_color::{Choice, Grid};
-use upglow_image::{BakeError, BakeOptions, Baker, Form, LinearPictureError, MaterialWay};
+use upglow_image::{BakeError, BakeOptions, Baker, Form, PictureError};
 use upglow_terminal::{Console, Failure, Report};
 
 use crate::args::{BakeArgs, BakeForm};
@@ -71,8 +71,8 @@ fn form(args: &BakeArgs) -> Result<Form, Failure> {
     ];
     plan::refuse_ignored("--as", args.form, &options)?;
     Ok(match (args.form, &result.light) {
-        (Material, _) if result.fast => Form::Material(MaterialWay::Interpolated),
-        (Material, _) => Form::Material(MaterialWay::Polished),
+        (Material, _) if result.fast => Form::InterpolatedMaterial,
+        (Material, _) => Form::Material,
         (Spectral, _) => {
             let [first, last, step] = DEFAULT_BANDS;
             let default = || Grid::try_new(first, last, step).expect("whole steps");
@@ -112,7 +112,7 @@ fn refused(error: BakeError, cube: &Path) -> Failure {
 
 fn failure(error: BakeError, input: &Path, output: &Path) -> Failure {
     match error {
-        BakeError::Stopped => Failure::Stopped,
+        BakeError::Stopped(_) => Failure::Stopped,
         BakeError::Write(error) => Failure::file(output, error),
         BakeError::Picture(error) => picture_failure(error, input),
         BakeError::Texel { .. } => {
@@ -123,10 +123,10 @@ fn failure(error: BakeError, input: &Path, output: &Path) -> Failure {
 }
 
 /// What is wrong with a picture, with the option that mends it.
-pub(super) fn picture_failure(error: LinearPictureError, input: &Path) -> Failure {
+pub(super) fn picture_failure(error: PictureError, input: &Path) -> Failure {
     let remedy = match error {
-        LinearPictureError::Space => "; give --space",
-        LinearPictureError::Encoding => "; give --encoding",
+        PictureError::Space => "; give --space",
+        PictureError::Encoding => "; give --encoding",
         _ => "",
     };
     Failure::file(input, error).with(remedy)

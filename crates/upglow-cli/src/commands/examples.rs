@@ -4,9 +4,7 @@ use std::path::Path;
 
 use serde::Serialize;
 use upglow_color::RgbSpace;
-use upglow_image::{
-    EXAMPLE_PICTURES, ExamplePicture, ExrDescription, ExrWriter, WriteExrError, chromaticities,
-};
+use upglow_image::{ExamplePicture, ExrDescription, ExrWriter, WriteExrError};
 use upglow_terminal::{Console, Failure, Report};
 
 use crate::args::ExamplesArgs;
@@ -29,7 +27,7 @@ struct PictureReport {
 pub(crate) fn run(args: &ExamplesArgs, console: &Console) -> Result<(), Failure> {
     files::make_folder(&args.out)?;
     let mut pictures = Vec::new();
-    for picture in EXAMPLE_PICTURES {
+    for picture in ExamplePicture::ALL {
         let path = args.out.join(format!("{}.exr", picture.name));
         write(&path, &picture).map_err(|error| Failure::file(&path, error))?;
         let [width, height] = picture.size;
@@ -40,9 +38,8 @@ pub(crate) fn run(args: &ExamplesArgs, console: &Console) -> Result<(), Failure>
 }
 
 fn write(path: &Path, picture: &ExamplePicture) -> Result<(), WriteExrError> {
-    let mut description = ExrDescription::new(picture.size, ["R", "G", "B"]);
-    let space = chromaticities(&RgbSpace::default());
-    description.attributes.insert("chromaticities".into(), space);
+    let description =
+        ExrDescription::new(picture.size, ["R", "G", "B"]).with_space(&RgbSpace::default());
     let mut writer = ExrWriter::create(path, description)?;
     for y in 0..picture.size[1] {
         let row = picture.row(y);

@@ -1,7 +1,7 @@
 //! `upglow lint`: whether files are well-formed spectral EXR.
 
 use serde::Serialize;
-use upglow_image::{Depth, ExrReader, Lint, baked_form, lint};
+use upglow_image::{ExrReader, Form, Lint};
 use upglow_terminal::{Console, Failure, Report};
 
 use crate::args::LintArgs;
@@ -19,18 +19,18 @@ struct LintReport {
 }
 
 pub(crate) fn run(args: &LintArgs, console: &Console) -> Result<(), Failure> {
-    let depth = if args.names_only { Depth::Header } else { Depth::Pixels };
     let mut broken = Vec::new();
     for path in &args.files {
         pictures::check_there(path, "an OpenEXR file")?;
-        let lint = lint(path, depth).map_err(|error| Failure::file(path, error))?;
+        let lint = if args.names_only { Lint::of_header(path) } else { Lint::of_file(path) };
+        let lint = lint.map_err(|error| Failure::file(path, error))?;
         if !lint.is_well_formed() {
             broken.push(path);
         }
         let reader = ExrReader::open(path).ok();
         console.print(&LintReport {
             file: path.display().to_string(),
-            baked_as: reader.and_then(|r| baked_form(r.attributes()).map(str::to_owned)),
+            baked_as: reader.and_then(|r| Form::stated(&r).map(str::to_owned)),
             well_formed: lint.is_well_formed(),
             lint,
         })?;

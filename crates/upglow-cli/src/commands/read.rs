@@ -2,10 +2,7 @@
 
 use serde::Serialize;
 use upglow::{Fluorescence, Material, Model};
-use upglow_image::{
-    BispectralUnit, ExrReader, MaterialPicture, SpectralPicture, SpectralPictureError,
-    SpectralTexel, baked_form,
-};
+use upglow_image::{ExrReader, Form, FormError, MaterialPicture, SpectralPicture, SpectralTexel};
 use upglow_terminal::{Console, Failure, Report};
 
 use super::material_report::{ReflectanceReport, dye_names};
@@ -25,15 +22,8 @@ struct Texel {
 struct SpectrumReport {
     #[serde(flatten)]
     texel: Texel,
-    /// Wavelength (nm), and share of its light that leaves at it.
-    reflectance: Vec<(f64, f32)>,
-    /// Wavelength (nm), radiance.
-    radiance: Vec<(f64, f32)>,
-    /// Incident and outgoing wavelength (nm), and the share that takes that way.
-    reradiation: Vec<(f64, f64, f32)>,
-    /// What the file says re-radiation is a share of.
-    reradiation_unit: Option<&'static str>,
-    preview: Option<[f32; 3]>,
+    #[serde(flatten)]
+    spectrum: SpectralTexel,
 }
 
 /// The six numbers of a baked material, or what they mean.
@@ -65,11 +55,10 @@ pub(crate) fn run(args: &ReadArgs, console: &Console) -> Result<(), Failure> {
         return console.print(&found.map_err(|error| Failure::file(&args.file, error))?);
     }
     let picture = SpectralPicture::open(&args.file);
-    let found = picture.and_then(|mut picture| {
-        Ok(SpectrumReport::new(texel, picture.at(x, y)?, picture.bispectral_unit()))
-    });
-    let found = found.map_err(|error| match (&error, baked_form(reader.attributes())) {
-        (SpectralPictureError::NotSpectral, Some("radiance")) => {
+    let found =
+        picture.and_then(|mut picture| Ok(SpectrumReport { texel, spectrum: picture.at(x, y)? }));
+    let found = found.map_err(|error| match (&error, Form::stated(&reader)) {
+        (FormError::NotSpectral, Some("radiance")) => {
             let message = "colors under a light, expected a file baked as material or spectral";
             Failure::file(&args.file, message)
         }
@@ -142,21 +131,9 @@ impl Report for MaterialReport {
 }
 
 impl SpectrumReport {
-    fn new(texel: Texel, found: SpectralTexel, unit: Option<BispectralUnit>) -> Self {
-        let pairs = found.reradiation.iter().map(|r| (r.in_nm, r.out_nm, r.value));
-        Self {
-            texel,
-            reradiation: pairs.collect(),
-            reradiation_unit: unit.map(BispectralUnit::name),
-            reflectance: found.reflectance,
-            radiance: found.radiance,
-            preview: found.preview,
-        }
-    }
-
     /// For each incident wavelength: the share that leaves at longer ones, and where most of it does.
     fn moved(&self, nm: f64) -> Option<(f32, f64)> {
-        let row = || self.reradiation.iter().filter(|(i, _, v)| *i == nm && *v > 0.0);
+        let row = || self.spectrum.reradiation.iter().filter(|(i, _, v)| *i == nm && *v > 0.0);
         let most = row().max_by(|a, b| a.2.total_cmp(&b.2))?;
         Some((row().map(|(_, _, v)| v).sum(), most.1))
     }
@@ -165,16 +142,19 @@ impl SpectrumReport {
 impl Report for SpectrumReport {
     fn text(&self) -> String {
         let mut lines = self.texel.lines();
-        if let Some([r, g, b]) = self.preview {
+        if let Some([r, g, b]) = self.spectrum.preview {
             lines.add("preview", format_args!("{r:.4}, {g:.4}, {b:.4}"));
         }
         let mut table = Table::new([
             ("nm", Side::Right),
-            (if self.reflectance.is_empty() { "radiance" } else { "reflectance" }, Side::Right),
+            (
+                if self.spectrum.reflectance.is_empty() { "radiance" } else { "reflectance" },
+                Side::Right,
+            ),
             ("moved", Side::Right),
             ("most to nm", Side::Right),
         ]);
-        for (nm, value) in self.reflectance.iter().chain(&self.radiance) {
+        for (nm, value) in self.spectrum.reflectance.iter().chain(&self.spectrum.radiance) {
             let (share, to) = match self.moved(*nm) {
                 Some((share, to_nm)) => (format!("{share:.4}"), to_nm.to_string()),
                 None => (String::new(), String::new()),

@@ -2,33 +2,39 @@
 
 use upglow::{Cube, Node};
 
-use crate::exr::attribute::{Attribute, Attributes};
-use crate::picture::chromaticities::chromaticities;
+use crate::exr::attribute::{Attribute, Attributes, chromaticities};
+use crate::spectral::channel::{LAYOUT_VERSION, LAYOUT_VERSION_VALUE};
 
 /// The header of the cube as JSON: contract, model, fit.
-pub(crate) const HEADER: &str = "upglow.header";
+pub(super) const HEADER: &str = "upglow.header";
 /// A cube file of two empty nodes a side: the same contract, model and curves, for programs.
-pub(crate) const MODEL: &str = "upglow.model";
+pub(super) const MODEL: &str = "upglow.model";
 /// Name of the form: material, spectral or radiance.
-pub(crate) const FORM: &str = "upglow.form";
+pub(super) const FORM: &str = "upglow.form";
 /// What the channels hold, in words.
-pub(crate) const CHANNELS: &str = "upglow.channels";
+pub(super) const CHANNELS: &str = "upglow.channels";
 
 const MODEL_KIND: &str = "upglowCube";
 
 /// What every form says.
-pub(crate) fn common(cube: &Cube, form: &str, channels: &str) -> Attributes {
-    let text = |text: &str| Attribute::Text(text.into());
+pub(super) fn common(cube: &Cube, form: &str, channels: &str) -> Attributes {
     Attributes::from([
         ("chromaticities".to_owned(), chromaticities(&cube.contract().space)),
-        (HEADER.to_owned(), text(&cube.header_json())),
-        (FORM.to_owned(), text(form)),
-        (CHANNELS.to_owned(), text(channels)),
+        (HEADER.to_owned(), cube.header_json().into()),
+        (FORM.to_owned(), form.into()),
+        (CHANNELS.to_owned(), channels.into()),
     ])
 }
 
+/// What both spectral forms say.
+pub(super) fn spectral(cube: &Cube, channels: &str) -> Attributes {
+    let mut attributes = common(cube, "spectral", channels);
+    attributes.insert(LAYOUT_VERSION.into(), LAYOUT_VERSION_VALUE.into());
+    attributes
+}
+
 /// The contract, model and curves of a cube without its materials.
-pub(crate) fn model(cube: &Cube) -> Attribute {
+pub(super) fn model(cube: &Cube) -> Attribute {
     let [least, _] = Cube::RESOLUTIONS;
     let nodes = vec![Node::default(); least.pow(3)];
     let (contract, model, fit) =
@@ -39,7 +45,7 @@ pub(crate) fn model(cube: &Cube) -> Attribute {
 }
 
 /// The cube without materials that [`model`] stored; `None` where there is none or it is damaged.
-pub(crate) fn read_model(attributes: &Attributes) -> Option<Cube> {
+pub(super) fn read_model(attributes: &Attributes) -> Option<Cube> {
     match attributes.get(MODEL)? {
         Attribute::Other { kind, bytes } if kind == MODEL_KIND => Cube::from_bytes(bytes).ok(),
         _ => None,

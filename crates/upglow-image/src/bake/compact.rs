@@ -4,13 +4,12 @@ use upglow::{Cube, DyeModel, Interpolation, Mixing, Mixture, Node};
 use upglow_color::{Grid, LinearRgb};
 use upglow_fit::Polisher;
 
-use super::radiance::RadianceMaker;
-use super::spectral::PREVIEW;
-use super::{BakeError, Maker, attributes};
-use crate::exr::attribute::{Attribute, Attributes};
+use super::maker::Maker;
+use super::radiance::{NAMES, RadianceMaker};
+use super::{BakeError, attributes};
+use crate::exr::attribute::Attributes;
 use crate::exr::header::Sample;
 use crate::exr::writer::Compression;
-use crate::spectral::channel::{LAYOUT_VERSION, LAYOUT_VERSION_VALUE};
 use crate::spectral::compact::{CompactForm, CompactLayout, MOST_EXTRA_CHANNELS};
 
 /// The channels of [`CompactLayout`] beside a preview.
@@ -63,13 +62,12 @@ impl<'c> CompactMaker<'c> {
 
 impl Maker for CompactMaker<'_> {
     fn channels(&self) -> Vec<String> {
-        let preview = PREVIEW.map(str::to_owned).into_iter();
+        let preview = NAMES.map(str::to_owned).into_iter();
         preview.chain(self.layout.channel_names()).collect()
     }
 
     fn attributes(&self) -> Attributes {
-        let mut attributes = attributes::common(self.cube, "spectral", CHANNELS);
-        attributes.insert(LAYOUT_VERSION.into(), Attribute::Text(LAYOUT_VERSION_VALUE.into()));
+        let mut attributes = attributes::spectral(self.cube, CHANNELS);
         attributes.extend(self.layout.attributes());
         attributes
     }
@@ -87,7 +85,7 @@ impl Maker for CompactMaker<'_> {
     }
 
     fn fill(&self, rgb: &[[f32; 3]], planes: &mut [&mut [f32]]) {
-        let (preview, stored) = planes.split_at_mut(PREVIEW.len());
+        let (preview, stored) = planes.split_at_mut(NAMES.len());
         self.preview.fill_rgb(rgb, preview);
         let mut texel = 0;
         self.for_each_mixture(rgb, |mixture| {

@@ -4,8 +4,9 @@ use half::f16;
 use upglow::{Cube, Model, Node};
 use upglow_fit::{FitOptionsError, Polisher};
 
-use super::{Maker, MaterialWay, attributes};
-use crate::exr::attribute::{Attribute, Attributes};
+use super::attributes;
+use super::maker::Maker;
+use crate::exr::attribute::Attributes;
 use crate::exr::header::Sample;
 use crate::exr::writer::Compression;
 
@@ -14,26 +15,36 @@ use crate::exr::writer::Compression;
 pub(super) struct MaterialMaker<'c> {
     cube: &'c Cube,
     polisher: Polisher<'c>,
-    way: MaterialWay,
+    /// Whether materials are moved until they show their colors.
+    is_polished: bool,
     sample: Sample,
 }
 
 /// Wavelengths are stored from here on: half precision keeps an eighth of a nanometer within 256 nm
 /// of zero, and only half a nanometer at 600.
-pub(crate) const ORIGIN_NM: f32 = 550.0;
+const ORIGIN_NM: f32 = 550.0;
 
 /// Steepest point of the reflectance: its wavelength, level and slope; see [`upglow::Edge`].
-pub(crate) const REFLECTANCE: [&str; 3] =
+const REFLECTANCE: [&str; 3] =
     ["reflectance.edge_from_550nm", "reflectance.level", "reflectance.slope_per_nm"];
 /// Number of the first dye, share of its neighbor, concentration.
-pub(crate) const DYES: [&str; 3] =
-    ["fluorescence.dye", "fluorescence.weight", "fluorescence.concentration"];
+const DYES: [&str; 3] = ["fluorescence.dye", "fluorescence.weight", "fluorescence.concentration"];
 /// Peak of the emission, Stokes shift, concentration.
-pub(crate) const BELLS: [&str; 3] = [
+const BELLS: [&str; 3] = [
     "fluorescence.emission_peak_from_550nm",
     "fluorescence.stokes_shift_nm",
     "fluorescence.concentration",
 ];
+
+/// The channels of a model's materials, in the order of their numbers.
+pub(super) fn channel_names(model: &Model) -> impl Iterator<Item = &'static str> {
+    let fluorescence = match model {
+        Model::Reflectance => None,
+        Model::Dyes(_) => Some(DYES),
+        Model::Analytic(_) => Some(BELLS),
+    };
+    REFLECTANCE.into_iter().chain(fluorescence.into_iter().flatten())
+}
 
 /// What the channels hold.
 const CHANNELS: &str = "one material a texel, as docs/material-exr.md of upglow describes: \
@@ -46,32 +57,23 @@ impl<'c> MaterialMaker<'c> {
     /// [`FitOptionsError`] if the cube records a slope limit that no fit can keep.
     pub(super) fn new(
         cube: &'c Cube,
-        way: MaterialWay,
+        is_polished: bool,
         sample: Sample,
     ) -> Result<Self, FitOptionsError> {
-        Ok(Self { cube, polisher: Polisher::new(cube)?, way, sample })
+        Ok(Self { cube, polisher: Polisher::new(cube)?, is_polished, sample })
     }
 }
 
 impl Maker for MaterialMaker<'_> {
     fn channels(&self) -> Vec<String> {
-        let fluorescence = match self.cube.model() {
-            Model::Reflectance => None,
-            Model::Dyes(_) => Some(DYES),
-            Model::Analytic(_) => Some(BELLS),
-        };
-        let names = REFLECTANCE.into_iter().chain(fluorescence.into_iter().flatten());
-        names.map(str::to_owned).collect()
+        channel_names(self.cube.model()).map(str::to_owned).collect()
     }
 
     fn attributes(&self) -> Attributes {
         let mut attributes = attributes::common(self.cube, "material", CHANNELS);
         attributes.insert(attributes::MODEL.into(), attributes::model(self.cube));
-        let way = match self.way {
-            MaterialWay::Polished => "polished",
-            MaterialWay::Interpolated => "interpolated",
-        };
-        attributes.insert("upglow.way".into(), Attribute::Text(way.into()));
+        let way = if self.is_polished { "polished" } else { "interpolated" };
+        attributes.insert("upglow.way".into(), way.into());
         attributes
     }
 
@@ -81,9 +83,10 @@ impl Maker for MaterialMaker<'_> {
 
     fn fill(&self, rgb: &[[f32; 3]], planes: &mut [&mut [f32]]) {
         let mut nodes = vec![Node::default(); rgb.len()];
-        let made = match self.way {
-            MaterialWay::Polished => self.polisher.polish(rgb, &mut nodes),
-            MaterialWay::Interpolated => self.polisher.interpolate(rgb, &mut nodes),
+        let made = if self.is_polished {
+            self.polisher.polish(rgb, &mut nodes)
+        } else {
+            self.polisher.interpolate(rgb, &mut nodes)
         };
         made.expect("as many materials as texels");
         let dyes = matches!(self.cube.model(), Model::Dyes(_));
@@ -127,7 +130,7 @@ fn towards_zero(value: f32) -> f32 {
 }
 
 /// The node whose numbers a texel holds; the color difference is not among them.
-pub(crate) fn node_of(values: [f32; 6], model: &Model) -> Node {
+pub(super) fn node_of(values: [f32; 6], model: &Model) -> Node {
     let [edge, level, slope_per_nm, a, b, c] = values;
     let reflectance = [edge + ORIGIN_NM, level, slope_per_nm];
     match model {

@@ -3,36 +3,11 @@
 use std::path::Path;
 
 use upglow::{Cube, Material, Model, Node, NodeError};
-use upglow_color::Contract;
 
-use crate::bake::attributes::{MODEL, read_model};
-use crate::bake::material::{BELLS, DYES, REFLECTANCE, node_of};
-use crate::exr::error::ExrError;
+use super::attributes::{MODEL, read_model};
+use super::material::{channel_names, node_of};
 use crate::exr::reader::ExrReader;
-
-/// Why a file gives no materials.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum MaterialPictureError {
-    /// The file cannot be read.
-    #[error(transparent)]
-    Exr(#[from] ExrError),
-    /// It says nothing, or nothing sound, of the model behind its numbers.
-    #[error(
-        "attribute {MODEL} is absent or damaged, expected a file of `upglow bake --as material`"
-    )]
-    Model,
-    /// A texel's numbers make no material of the model.
-    #[error("texel {x},{y}")]
-    Texel {
-        /// Column, from 0 at the left.
-        x: usize,
-        /// Row, from 0 at the top.
-        y: usize,
-        /// What is wrong with it.
-        source: NodeError,
-    },
-}
+use crate::spectral::error::FormError;
 
 /// A file of one material a texel, as `docs/material-exr.md` describes it, opened for reading.
 #[derive(Debug)]
@@ -53,16 +28,12 @@ impl MaterialPicture {
     ///
     /// # Errors
     ///
-    /// [`MaterialPictureError`] if it cannot be read or holds no materials.
-    pub fn open(path: &Path) -> Result<Self, MaterialPictureError> {
+    /// [`FormError`] if it cannot be read or holds no materials.
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, FormError> {
         let reader = ExrReader::open(path)?;
-        let cube = read_model(reader.attributes()).ok_or(MaterialPictureError::Model)?;
-        let fluorescence: &[&str] = match cube.model() {
-            Model::Reflectance => &[],
-            Model::Dyes(_) => &DYES,
-            Model::Analytic(_) => &BELLS,
-        };
-        let names = REFLECTANCE.iter().chain(fluorescence);
+        let cube =
+            read_model(reader.attributes()).ok_or(FormError::NotMaterial { attribute: MODEL })?;
+        let names = channel_names(cube.model());
         let channels = names.map(|name| reader.channel(name)).collect::<Result<_, _>>()?;
         Ok(Self { reader, cube, channels })
     }
@@ -70,11 +41,6 @@ impl MaterialPicture {
     /// Width and height, texels.
     pub fn size(&self) -> [usize; 2] {
         self.reader.size()
-    }
-
-    /// What RGB meant when it was baked.
-    pub fn contract(&self) -> &Contract {
-        self.cube.contract()
     }
 
     /// What the fluorescence is made of.
@@ -86,8 +52,8 @@ impl MaterialPicture {
     ///
     /// # Errors
     ///
-    /// [`MaterialPictureError`] if there is no such row, or it is damaged.
-    pub fn row(&mut self, y: usize) -> Result<Vec<Material>, MaterialPictureError> {
+    /// [`FormError`] if there is no such row, or it is damaged.
+    pub fn row(&mut self, y: usize) -> Result<Vec<Material>, FormError> {
         let [width, _] = self.size();
         self.region(0..width, y)
     }
@@ -96,8 +62,8 @@ impl MaterialPicture {
     ///
     /// # Errors
     ///
-    /// [`MaterialPictureError`] if there is no such texel, or it is damaged.
-    pub fn at(&mut self, x: usize, y: usize) -> Result<Material, MaterialPictureError> {
+    /// [`FormError`] if there is no such texel, or it is damaged.
+    pub fn at(&mut self, x: usize, y: usize) -> Result<Material, FormError> {
         Ok(self.region(x..x + 1, y)?[0])
     }
 
@@ -105,13 +71,13 @@ impl MaterialPicture {
         &mut self,
         columns: std::ops::Range<usize>,
         y: usize,
-    ) -> Result<Vec<Material>, MaterialPictureError> {
+    ) -> Result<Vec<Material>, FormError> {
         let planes = self.reader.read_region(columns.clone(), y..y + 1, &self.channels)?;
         let each = columns.enumerate().map(|(i, x)| {
             let mut values = [0.0; 6];
             values.iter_mut().zip(&planes).for_each(|(value, plane)| *value = plane[i]);
             let node = node_of(values, self.cube.model());
-            self.material(node).map_err(|source| MaterialPictureError::Texel { x, y, source })
+            self.material(node).map_err(|source| FormError::Material { x, y, source })
         });
         each.collect()
     }

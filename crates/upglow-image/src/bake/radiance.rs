@@ -3,7 +3,8 @@
 use upglow::{ColorTable, Cube};
 use upglow_color::{Grid, Illuminant, Matrix3};
 
-use super::{Maker, attributes};
+use super::attributes;
+use super::maker::Maker;
 use crate::exr::attribute::{Attribute, Attributes};
 use crate::exr::writer::Compression;
 use crate::rounding::to_single;
@@ -42,6 +43,9 @@ impl<'c> RadianceMaker<'c> {
     }
 }
 
+/// Red, green and blue: also a preview for programs without spectra.
+pub(super) const NAMES: [&str; 3] = ["R", "G", "B"];
+
 /// What the three channels hold.
 const CHANNELS: &str = "R, G, B: linear light that leaves the material, in the RGB space of \
                         upglow.header, under upglow.light, which brings as much power as the \
@@ -49,12 +53,12 @@ const CHANNELS: &str = "R, G, B: linear light that leaves the material, in the R
 
 impl Maker for RadianceMaker<'_> {
     fn channels(&self) -> Vec<String> {
-        ["R", "G", "B"].map(str::to_owned).to_vec()
+        NAMES.map(str::to_owned).to_vec()
     }
 
     fn attributes(&self) -> Attributes {
         let mut attributes = attributes::common(self.cube, "radiance", CHANNELS);
-        attributes.insert("upglow.light".into(), Attribute::Text(self.light.name().into()));
+        attributes.insert("upglow.light".into(), self.light.name().into());
         attributes.insert("upglow.white".into(), Attribute::Float3(self.white.map(to_single)));
         attributes
     }

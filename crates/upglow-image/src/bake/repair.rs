@@ -8,8 +8,9 @@ use crate::rounding::to_single;
 
 /// What to do with texels that cannot be baked as they are.
 ///
-/// With each, a texel with a value that is no number or infinite becomes black, and is counted.
+/// With each, a texel with a value that is not a number or infinite becomes black, and is counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Repair {
     /// Each value becomes the nearest in 0..=1.
     Clip,
@@ -23,67 +24,51 @@ pub enum Repair {
 
 /// A repair with all it must know of the picture.
 #[derive(Clone, Copy, Debug)]
-pub enum Repairer<'a> {
-    /// See [`Repair::Clip`].
-    Clip,
-    /// See [`Repair::Scale`].
-    Scale {
-        /// The picture's greatest value, by [`greatest_value`].
-        greatest: f32,
-    },
-    /// See [`Repair::Nearest`].
-    Nearest {
-        /// What materials show under the picture's contract.
-        table: &'a StandingTable,
-    },
+pub(super) struct Repairer<'a> {
+    pub(super) repair: Repair,
+    /// The picture's greatest value, by [`greatest_value`], where [`Repair::reads_all_first`].
+    pub(super) greatest: f32,
+    /// What materials show under the picture's contract.
+    pub(super) table: &'a StandingTable,
 }
 
 /// How many texels a repair changed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Repaired {
+pub(super) struct Repaired {
     /// Texels that are not what they were, those made black among them.
-    pub changed: u64,
-    /// Texels with a value that was no number or infinite, made black.
-    pub made_black: u64,
+    pub(super) changed: u64,
+    /// Texels with a value that was not a number or infinite, made black.
+    made_black: u64,
 }
 
 /// Texels that one core repairs at a time: enough to be worth handing over.
 const REPAIRED_TOGETHER: usize = 1024;
 
 /// How far a texel moves from the border of what materials show towards a gray, as a share of the
-/// way. Single precision rounds by 6e-8, so with much less a texel could end up outside; with much
+/// distance. Single precision rounds by 6e-8, so with much less a texel could end up outside; with much
 /// more one could see it.
 const OFF_THE_BORDER: f64 = 1e-5;
 
-/// Halvings of the way to gray for a color that 0..=1 moved out of reach: to a thousandth of it.
+/// Halvings of the distance to gray for a color that 0..=1 moved out of reach: to a thousandth of it.
 const HALVINGS: usize = 10;
 
 /// The greatest finite value; 0 if there is none above. The greatest of a picture is the greatest
 /// of its parts.
-pub fn greatest_value(rgb: &[[f32; 3]]) -> f32 {
+pub(super) fn greatest_value(rgb: &[[f32; 3]]) -> f32 {
     let finite = rgb.as_flattened().iter().copied().filter(|v| v.is_finite());
     finite.fold(0.0, f32::max)
 }
 
 impl Repair {
     /// Whether the whole picture must be read once, for [`greatest_value`], before a texel changes.
-    pub fn reads_all_first(self) -> bool {
+    pub(super) fn reads_all_first(self) -> bool {
         self == Self::Scale
-    }
-
-    /// The repair for a picture whose greatest value is `greatest`, under the contract of `table`.
-    pub fn of(self, greatest: f32, table: &StandingTable) -> Repairer<'_> {
-        match self {
-            Self::Clip => Repairer::Clip,
-            Self::Scale => Repairer::Scale { greatest },
-            Self::Nearest => Repairer::Nearest { table },
-        }
     }
 }
 
 impl Repairer<'_> {
     /// Repairs texels in place. Afterwards all values are in 0..=1.
-    pub fn repair(&self, rgb: &mut [[f32; 3]]) -> Repaired {
+    pub(super) fn repair(&self, rgb: &mut [[f32; 3]]) -> Repaired {
         let parts = rgb.par_chunks_mut(REPAIRED_TOGETHER);
         let repaired = parts.map(|part| {
             part.iter_mut().fold(Repaired::default(), |sum, texel| sum.with(self.texel(texel)))
@@ -100,19 +85,17 @@ impl Repairer<'_> {
     }
 
     fn color(&self, rgb: [f32; 3]) -> [f32; 3] {
-        match self {
-            Self::Clip => rgb.map(clipped),
-            Self::Scale { greatest } if *greatest > 1.0 => rgb.map(|v| clipped(v / greatest)),
-            Self::Scale { .. } => rgb.map(clipped),
-            Self::Nearest { table } => nearest(rgb, table),
+        match self.repair {
+            Repair::Scale if self.greatest > 1.0 => rgb.map(|v| clipped(v / self.greatest)),
+            Repair::Clip | Repair::Scale => rgb.map(clipped),
+            Repair::Nearest => nearest(rgb, self.table),
         }
     }
 }
 
 impl Repaired {
     /// Both together.
-    #[must_use]
-    pub fn with(self, other: Self) -> Self {
+    fn with(self, other: Self) -> Self {
         Self {
             changed: self.changed + other.changed,
             made_black: self.made_black + other.made_black,
@@ -142,7 +125,7 @@ fn nearest(rgb: [f32; 3], table: &StandingTable) -> [f32; 3] {
     towards_gray(if shown(OFF_THE_BORDER) { OFF_THE_BORDER } else { least_share(shown) })
 }
 
-/// About the least share of the way to gray at which a color is shown; gray itself is.
+/// About the least share of the distance to gray at which a color is shown; gray itself is.
 fn least_share(shown: impl Fn(f64) -> bool) -> f64 {
     let (mut outside, mut inside) = (OFF_THE_BORDER, 1.0);
     for _ in 0..HALVINGS {
@@ -170,6 +153,10 @@ mod tests {
         TABLE.get_or_init(|| StandingTable::new(&Contract::default()))
     }
 
+    fn repairer(repair: Repair, greatest: f32) -> Repairer<'static> {
+        Repairer { repair, greatest, table: table() }
+    }
+
     fn any_value() -> impl Strategy<Value = f32> {
         let odd = prop::sample::select(vec![f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX]);
         prop_oneof![8 => -0.5..3.0_f32, 1 => odd]
@@ -184,13 +171,13 @@ mod tests {
         ) {
             for &repair in Repair::ALL {
                 let mut rgb = texels.clone();
-                let found = repair.of(greatest_value(&rgb), table()).repair(&mut rgb);
+                let found = repairer(repair, greatest_value(&rgb)).repair(&mut rgb);
                 prop_assert!(rgb.as_flattened().iter().all(|v| (0.0..=1.0).contains(v)));
                 let black = texels.iter().filter(|t| t.iter().any(|v| !v.is_finite())).count();
                 prop_assert_eq!(found.made_black, black as u64);
                 let changed = texels.iter().zip(&rgb).filter(|(a, b)| a != b).count();
                 prop_assert_eq!(found.changed, changed as u64);
-                let again = repair.of(greatest_value(&rgb), table()).repair(&mut rgb);
+                let again = repairer(repair, greatest_value(&rgb)).repair(&mut rgb);
                 prop_assert_eq!(again, Repaired::default(), "{}", repair);
             }
         }
@@ -198,7 +185,7 @@ mod tests {
         #[test]
         fn the_nearest_is_shown_by_some_material(rgb in prop::array::uniform3(-0.5..3.0_f32)) {
             let mut texel = [rgb];
-            Repairer::Nearest { table: table() }.repair(&mut texel);
+            repairer(Repair::Nearest, 0.0).repair(&mut texel);
             prop_assert!(is_shown(texel[0], table()), "{rgb:?} {texel:?}");
         }
     }
@@ -208,7 +195,7 @@ mod tests {
         let good = [[0.0; 3], [1.0; 3], [0.2, 0.3, 0.4], [0.9, 0.0, 0.9]];
         for &repair in Repair::ALL {
             let mut rgb = good;
-            let found = repair.of(greatest_value(&rgb), table()).repair(&mut rgb);
+            let found = repairer(repair, greatest_value(&rgb)).repair(&mut rgb);
             assert_eq!((rgb, found), (good, Repaired::default()), "{repair}");
         }
     }
@@ -217,7 +204,7 @@ mod tests {
     fn scaling_keeps_the_ratios_and_makes_the_greatest_value_one() {
         let mut rgb = [[2.0, 1.0, 0.5], [-1.0, 4.0, f32::INFINITY], [0.0, 4.0, 1.0]];
         let greatest = greatest_value(&rgb);
-        let found = Repairer::Scale { greatest }.repair(&mut rgb);
+        let found = repairer(Repair::Scale, greatest).repair(&mut rgb);
         assert_eq!(rgb, [[0.5, 0.25, 0.125], [0.0; 3], [0.0, 1.0, 0.25]]);
         assert_eq!(found, Repaired { changed: 3, made_black: 1 });
     }

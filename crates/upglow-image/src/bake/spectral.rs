@@ -3,14 +3,13 @@
 use upglow::{Bispectral, Cube, Interpolation, Model};
 use upglow_color::{Grid, LinearRgb};
 
-use super::radiance::RadianceMaker;
-use super::{Maker, attributes};
-use crate::exr::attribute::{Attribute, Attributes};
+use super::attributes;
+use super::maker::Maker;
+use super::radiance::{NAMES, RadianceMaker};
+use crate::exr::attribute::Attributes;
 use crate::exr::writer::Compression;
 use crate::rounding::to_single;
-use crate::spectral::channel::{
-    BISPECTRAL_UNIT, BispectralUnit, LAYOUT_VERSION, LAYOUT_VERSION_VALUE, SpectralChannel,
-};
+use crate::spectral::channel::{BISPECTRAL_UNIT, BispectralUnit, SpectralChannel, rising_pairs};
 
 /// The blend of each texel, one channel for each band and each pair of bands that rises.
 #[derive(Debug)]
@@ -26,9 +25,6 @@ const CHANNELS: &str = "T.<wavelength>: share of the light at a wavelength that 
                         share that leaves in the band of a longer wavelength; R, G, B: linear color \
                         under the contract's light";
 
-/// The channels that programs without spectra show.
-pub(super) const PREVIEW: [&str; 3] = ["R", "G", "B"];
-
 impl<'c> SpectralMaker<'c> {
     pub(super) fn new(cube: &'c Cube, grid: Grid) -> Self {
         let preview = RadianceMaker::new(cube, cube.contract().illuminant.clone());
@@ -41,8 +37,7 @@ impl<'c> SpectralMaker<'c> {
 
     /// Numbers of the bands of each pair that rises, in the order of the channels.
     fn pairs(&self) -> impl Iterator<Item = [usize; 2]> + use<> {
-        let count = if self.is_bispectral() { self.grid.len() } else { 0 };
-        (0..count).flat_map(move |i| (i + 1..count).map(move |o| [i, o]))
+        rising_pairs(if self.is_bispectral() { self.grid.len() } else { 0 })
     }
 }
 
@@ -53,15 +48,13 @@ impl Maker for SpectralMaker<'_> {
         let pairs =
             self.pairs().map(|[i, o]| SpectralChannel::Reradiation { in_nm: nm[i], out_nm: nm[o] });
         let spectral = bands.chain(pairs).map(|channel| channel.to_string());
-        PREVIEW.map(str::to_owned).into_iter().chain(spectral).collect()
+        NAMES.map(str::to_owned).into_iter().chain(spectral).collect()
     }
 
     fn attributes(&self) -> Attributes {
-        let mut attributes = attributes::common(self.cube, "spectral", CHANNELS);
-        let text = |text: &str| Attribute::Text(text.into());
-        attributes.insert(LAYOUT_VERSION.into(), text(LAYOUT_VERSION_VALUE));
+        let mut attributes = attributes::spectral(self.cube, CHANNELS);
         if self.is_bispectral() {
-            attributes.insert(BISPECTRAL_UNIT.into(), text(BispectralUnit::PerBand.name()));
+            attributes.insert(BISPECTRAL_UNIT.into(), BispectralUnit::PerBand.to_string().into());
         }
         attributes
     }
@@ -72,7 +65,7 @@ impl Maker for SpectralMaker<'_> {
     }
 
     fn fill(&self, rgb: &[[f32; 3]], planes: &mut [&mut [f32]]) {
-        let (preview, spectral) = planes.split_at_mut(PREVIEW.len());
+        let (preview, spectral) = planes.split_at_mut(NAMES.len());
         self.preview.fill_rgb(rgb, preview);
         let (bands, moved) = spectral.split_at_mut(self.grid.len());
         let pairs: Vec<[usize; 2]> = self.pairs().collect();

@@ -1,10 +1,8 @@
 //! Colors of the contract on a screen.
 
-use upglow_color::{Contract, Grid, Matrix3, RgbSpace, Xyz, srgb_encoded};
+use upglow_color::{Colorimetry, Contract, Grid, Matrix3, RgbSpace, Xyz, srgb_encoded};
 
-use super::Judge;
-
-/// The way from the contract's XYZ to sRGB: white is white.
+/// Turns the contract's XYZ into sRGB: white is white.
 #[derive(Debug)]
 pub(super) struct Display {
     srgb_from_xyz: Matrix3,
@@ -12,8 +10,7 @@ pub(super) struct Display {
 }
 
 impl Display {
-    pub(super) fn new(judge: &Judge) -> Self {
-        let colorimetry = judge.table().colorimetry();
+    pub(super) fn new(colorimetry: &Colorimetry) -> Self {
         let srgb = Contract {
             space: RgbSpace::named("srgb").expect("it is built in"),
             ..Contract::default()

@@ -6,73 +6,62 @@ mod text;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
-use super::palette::{Heat, place};
-use super::{CheckReport, CubeOpinion, Flaw, Raster, WorstTexel};
-use style::STYLE;
-use text::{escaped, grouped, percent, plural, value};
 use upglow_color::{Nearest, StandingKind};
 
-/// A picture and what was found.
-#[derive(Clone, Copy, Debug)]
-pub struct CheckedPicture<'a> {
-    /// Its name, as people know it.
-    pub name: &'a str,
-    /// The RGB space of its values.
-    pub space: &'a str,
-    /// The light of the contract.
-    pub light: &'a str,
-    /// The cube that was asked, if one was.
-    pub cube: Option<&'a str>,
-    /// What was found.
-    pub report: &'a CheckReport,
+use self::style::STYLE;
+use self::text::{escaped, grouped, percent, percent_of, plural, value};
+use super::cube_match::CubeMatch;
+use super::palette::{Heat, ramp_position};
+use super::raster::Raster;
+use super::report::{CheckReport, Flaw, WorstTexel};
+
+impl CheckReport {
+    /// A page of HTML about pictures: no scripts, nothing loaded from elsewhere, well-formed as XML.
+    /// Each picture prints on one sheet.
+    #[must_use]
+    pub fn page(reports: &[Self]) -> String {
+        let title = match reports {
+            [one] => format!("What {} needs", escaped(&one.file)),
+            many => format!("What {} pictures need", many.len()),
+        };
+        let overview = if reports.len() > 1 { overview(reports) } else { String::new() };
+        let articles: String = reports.iter().enumerate().map(|(i, r)| article(i, r)).collect();
+        format!(
+            "<!DOCTYPE html>\n<html xmlns=\"http://www.w3.org/1999/xhtml\" lang=\"en\">\n<head>\n\
+             <meta charset=\"utf-8\"/>\n\
+             <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n\
+             <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<main>\n\
+             {overview}{articles}</main>\n</body>\n</html>\n"
+        )
+    }
 }
 
-/// A page of HTML about `pictures`: no scripts, nothing loaded from elsewhere, well-formed as XML.
-/// Each picture prints on one sheet.
-pub fn check_page(pictures: &[CheckedPicture<'_>]) -> String {
-    let title = match pictures {
-        [one] => format!("What {} needs", escaped(one.name)),
-        many => format!("What {} pictures need", many.len()),
-    };
-    let overview = if pictures.len() > 1 { overview(pictures) } else { String::new() };
-    let articles: String = pictures.iter().enumerate().map(|(i, p)| article(i, p)).collect();
-    format!(
-        "<!DOCTYPE html>\n<html xmlns=\"http://www.w3.org/1999/xhtml\" lang=\"en\">\n<head>\n\
-         <meta charset=\"utf-8\"/>\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n\
-         <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<main>\n\
-         {overview}{articles}</main>\n</body>\n</html>\n"
-    )
-}
-
-fn overview(pictures: &[CheckedPicture<'_>]) -> String {
-    let row = |(i, picture): (usize, &CheckedPicture<'_>)| {
+fn overview(reports: &[CheckReport]) -> String {
+    let row = |(i, report): (usize, &CheckReport)| {
         format!(
             "<tr><td><a href=\"#picture-{i}\">{}</a></td><td class=\"wide\">{}</td><td>{}</td></tr>\n",
-            escaped(picture.name),
-            bar(picture.report),
-            headline(picture.report),
+            escaped(&report.file),
+            bar(report),
+            headline(report),
         )
     };
-    let rows: String = pictures.iter().enumerate().map(row).collect();
-    let count = pictures.len();
+    let rows: String = reports.iter().enumerate().map(row).collect();
+    let count = reports.len();
     format!(
         "<section class=\"overview\">\n<h1>What {count} pictures need</h1>\n\
          <table>\n<tbody>\n{rows}</tbody>\n</table>\n</section>\n"
     )
 }
 
-fn article(index: usize, picture: &CheckedPicture<'_>) -> String {
-    let CheckedPicture { name, space, light, cube, report } = *picture;
-    let (width, height) = (report.width, report.height);
-    let opinion = report.cube.map(|opinion| self::opinion(&opinion, cube.unwrap_or("the cube")));
+fn article(index: usize, report: &CheckReport) -> String {
+    let CheckReport { width, height, .. } = report;
     format!(
         "<article id=\"picture-{index}\">\n<header>\n<h2>{}</h2>\n\
          <p class=\"facts\">{width} × {height} texels · {} · seen under {}</p>\n</header>\n\
          <p class=\"verdict\">{}</p>\n<p class=\"next\">{}</p>\n{}{}{}{}{}{}</article>\n",
-        escaped(name),
-        escaped(space),
-        escaped(light),
+        escaped(&report.file),
+        escaped(&report.rgb_space),
+        escaped(&report.illuminant),
         headline(report),
         next(report),
         bar(report),
@@ -80,7 +69,7 @@ fn article(index: usize, picture: &CheckedPicture<'_>) -> String {
         pictures(report),
         flaws(report),
         worst(&report.worst),
-        opinion.unwrap_or_default(),
+        report.cube.as_ref().map(cube_match).unwrap_or_default(),
     )
 }
 
@@ -197,12 +186,14 @@ fn legend(report: &CheckReport) -> String {
 const TICKS: [f64; 4] = [1.0, 3.0, 10.0, 30.0];
 
 fn ramp(name: &str, heat: fn(f64) -> Heat) -> String {
-    // Enough straight lines to hide that the ramp's are straight in another place.
+    // Enough straight lines to hide that the ramp's are straight in another scale.
     let stops = (0..=16).map(|i| 30.0_f64.ln_1p() * f64::from(i) / 16.0).map(f64::exp_m1);
-    let stop = |de2000| format!(",{} {:.1}%", hex(heat(de2000).color()), 100.0 * place(de2000));
+    let stop =
+        |de2000| format!(",{} {:.1}%", hex(heat(de2000).color(0.0)), 100.0 * ramp_position(de2000));
     let stops: String = stops.map(stop).collect();
-    let tick =
-        |de2000: f64| format!("<b style=\"left:{:.1}%\">{de2000}</b>", 100.0 * place(de2000));
+    let tick = |de2000: f64| {
+        format!("<b style=\"left:{:.1}%\">{de2000}</b>", 100.0 * ramp_position(de2000))
+    };
     let ticks: String = TICKS.into_iter().map(tick).collect();
     format!(
         "<div class=\"ramp\"><span>{name}</span>\
@@ -216,7 +207,7 @@ fn flaws(report: &CheckReport) -> String {
     }
     let row = |flaw: Flaw| {
         let places: Vec<String> = report
-            .located
+            .flaws
             .iter()
             .filter(|texel| texel.flaw == flaw)
             .map(|texel| {
@@ -280,16 +271,16 @@ fn worst_row(texel: &WorstTexel) -> String {
     )
 }
 
-fn opinion(opinion: &CubeOpinion, cube: &str) -> String {
-    let CubeOpinion { texels, within_one, within_two, mean, greatest } = *opinion;
-    let share = |share: f64| text::percent_of(share);
+fn cube_match(found: &CubeMatch) -> String {
+    let CubeMatch { file, texels, within_one, within_two, mean_de2000, greatest_de2000 } = found;
     format!(
         "<h3>What {} makes of it</h3>\n<p>Of {} texels in range its blend shows <b>{}</b> within 1 \
-         ΔE00 and <b>{}</b> within 2; the mean is {mean:.2}, the greatest {greatest:.2}.</p>\n",
-        escaped(cube),
-        grouped(texels),
-        share(within_one),
-        share(within_two),
+         ΔE00 and <b>{}</b> within 2; the mean is {mean_de2000:.2}, the greatest \
+         {greatest_de2000:.2}.</p>\n",
+        escaped(file),
+        grouped(*texels),
+        percent_of(*within_one),
+        percent_of(*within_two),
     )
 }
 

@@ -7,9 +7,10 @@ use upglow_color::{LinearRgb, StandingKind};
 use upglow_fit::Estimate;
 
 use super::display::Display;
+use super::findings::Findings;
+use super::limits::Limits;
 use super::palette::Heat;
-use super::tally::Tally;
-use super::{Checker, Judge, Raster};
+use super::raster::Raster;
 use crate::rounding::to_single;
 
 /// Blocks of a picture, each a pixel of the maps.
@@ -30,18 +31,11 @@ struct Block {
     /// Sums over the texels that are colors, in multiples of [`UNIT`].
     sum: [u64; 3],
     colors: u32,
-    worst: Worst,
+    worst: Heat,
 }
 
-/// The worst that texels of a block are: the kind first, then the difference.
-#[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
-enum Worst {
-    #[default]
-    Reflectance,
-    Fluorescence(f32),
-    Unreachable(f32),
-    NoColor,
-}
+/// Greatest width and height of the maps.
+const LONGER_SIDE: usize = 1024;
 
 /// Values are summed in multiples of this: finer than 8 bits of sRGB are at black.
 const UNIT: f64 = 1.0 / 1_048_576.0;
@@ -61,8 +55,8 @@ pub(super) struct Tile<'a> {
 }
 
 impl Maps {
-    pub(super) fn new(width: usize, height: usize) -> Self {
-        let side = width.max(height).div_ceil(Checker::LONGER_SIDE);
+    pub(super) fn new([width, height]: [usize; 2]) -> Self {
+        let side = width.max(height).div_ceil(LONGER_SIDE);
         let (columns, rows) = (width.div_ceil(side), height.div_ceil(side));
         Self { width, side, columns, blocks: vec![Block::default(); columns * rows] }
     }
@@ -89,7 +83,7 @@ impl Maps {
     }
 
     pub(super) fn heat(&self, display: &Display) -> Raster {
-        self.raster(|block| block.heat(display).color())
+        self.raster(|block| block.worst.color(display.brightness(block.mean())))
     }
 
     pub(super) fn thumbnail(&self, display: &Display) -> Raster {
@@ -102,48 +96,48 @@ impl Maps {
 }
 
 impl Tile<'_> {
-    /// Judges its texels.
-    pub(super) fn judge(self, judge: &Judge) -> Tally {
+    /// Finds what its texels need.
+    pub(super) fn check(self, limits: &Limits) -> Findings {
         let Self { blocks, side, rows, columns, band, first_row, width } = self;
-        let mut tally = Tally::default();
-        let mut clerk = Clerk { judge, last: None, tally: &mut tally };
+        let mut texel_check = TexelCheck { limits, last: None, findings: Findings::default() };
         for y in rows {
             let row = (y - first_row) * width;
             let texels = &band[row + columns.start..row + columns.end];
             for (i, (part, block)) in texels.chunks(side).zip(blocks.iter_mut()).enumerate() {
                 let left = columns.start + i * side;
-                part.iter()
-                    .enumerate()
-                    .for_each(|(dx, &rgb)| clerk.judge((left + dx, y), rgb, block));
+                for (dx, &rgb) in part.iter().enumerate() {
+                    texel_check.add([left + dx, y], rgb, block);
+                }
             }
-            if let Some(cube) = judge.cube() {
-                clerk.tally.opinion.ask(cube, judge.table().colorimetry(), texels);
+            if let Some(cube) = &limits.cube {
+                let differences = &mut texel_check.findings.differences;
+                differences.ask(cube, limits.table.colorimetry(), texels);
             }
         }
-        tally
+        texel_check.findings
     }
 }
 
-/// Takes note of one texel after another.
-struct Clerk<'a> {
-    judge: &'a Judge,
+/// Checks one texel after another.
+struct TexelCheck<'a> {
+    limits: &'a Limits,
     /// The last color, for pictures are full of runs.
     last: Option<([f32; 3], Estimate)>,
-    tally: &'a mut Tally,
+    findings: Findings,
 }
 
-impl Clerk<'_> {
-    fn judge(&mut self, place: (usize, usize), rgb: [f32; 3], block: &mut Block) {
+impl TexelCheck<'_> {
+    fn add(&mut self, at: [usize; 2], rgb: [f32; 3], block: &mut Block) {
         if rgb.iter().any(|v| !(0.0..=1.0).contains(v)) {
-            self.tally.flawed(place, rgb);
+            self.findings.add_flaws(at, rgb);
         }
         if rgb.iter().all(|v| v.is_finite()) {
             let found = self.estimate(rgb);
-            self.tally.judged(place, rgb, &found);
+            self.findings.add_color(at, rgb, &found);
             block.add(rgb, &found);
         } else {
-            self.tally.no_color();
-            block.worst = Worst::NoColor;
+            self.findings.counts.add(None);
+            block.worst = Heat::NoColor;
         }
     }
 
@@ -151,7 +145,7 @@ impl Clerk<'_> {
         match self.last {
             Some((last, found)) if last == rgb => found,
             _ => {
-                let found = self.judge.table().estimate(LinearRgb(rgb.map(f64::from)));
+                let found = self.limits.table.estimate(LinearRgb(rgb.map(f64::from)));
                 self.last = Some((rgb, found));
                 found
             }
@@ -163,11 +157,12 @@ impl Block {
     fn add(&mut self, rgb: [f32; 3], found: &Estimate) {
         (0..3).for_each(|k| self.sum[k] += units(rgb[k]));
         self.colors += 1;
-        let de2000 = to_single(found.de2000);
+        // Single precision is plenty for a color.
+        let de2000 = f64::from(to_single(found.de2000));
         let worst = match found.kind {
             StandingKind::Reflectance => return,
-            StandingKind::NeedsFluorescence => Worst::Fluorescence(de2000),
-            StandingKind::Unreachable => Worst::Unreachable(de2000),
+            StandingKind::NeedsFluorescence => Heat::Fluorescence(de2000),
+            StandingKind::Unreachable => Heat::Unreachable(de2000),
         };
         if worst > self.worst {
             self.worst = worst;
@@ -176,15 +171,6 @@ impl Block {
 
     fn mean(&self) -> [f64; 3] {
         self.sum.map(|sum| sum as f64 * UNIT / f64::from(self.colors.max(1)))
-    }
-
-    fn heat(&self, display: &Display) -> Heat {
-        match self.worst {
-            Worst::Reflectance => Heat::Reflectance(display.brightness(self.mean())),
-            Worst::Fluorescence(de2000) => Heat::Fluorescence(f64::from(de2000)),
-            Worst::Unreachable(de2000) => Heat::Unreachable(f64::from(de2000)),
-            Worst::NoColor => Heat::NoColor,
-        }
     }
 }
 

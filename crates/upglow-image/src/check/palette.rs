@@ -3,17 +3,18 @@
 
 use super::display::byte;
 
-/// What a pixel of the heat map says.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// What a pixel of the heat map says: the worst that its texels are, the kind first, then the
+/// difference.
+#[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 pub(super) enum Heat {
-    /// A reflectance shows all of it; how bright it is, 0..=1.
-    Reflectance(f64),
+    /// A reflectance shows all of it.
+    #[default]
+    Reflectance,
     /// The furthest texel is this many ΔE00 beyond reflectance.
     Fluorescence(f64),
     /// The furthest texel is this many ΔE00 beyond any material.
     Unreachable(f64),
-    /// A value is no number or infinite.
-    #[default]
+    /// A value is not a number or infinite.
     NoColor,
 }
 
@@ -29,25 +30,26 @@ const UNREACHABLE: [[u8; 3]; 3] = [[245, 120, 215], [196, 24, 140], [88, 10, 94]
 const NO_COLOR: [u8; 3] = [0, 200, 230];
 
 impl Heat {
-    pub(super) fn color(self) -> [u8; 3] {
+    /// The color of the pixel; what a reflectance shows is gray, by how bright it is, 0..=1.
+    pub(super) fn color(self, bright: f64) -> [u8; 3] {
         match self {
-            Self::Reflectance(bright) => [byte(GRAYS[0] + (GRAYS[1] - GRAYS[0]) * bright); 3],
-            Self::Fluorescence(de2000) => ramp(&FLUORESCENCE, place(de2000)),
-            Self::Unreachable(de2000) => ramp(&UNREACHABLE, place(de2000)),
+            Self::Reflectance => [byte(GRAYS[0] + (GRAYS[1] - GRAYS[0]) * bright); 3],
+            Self::Fluorescence(de2000) => ramp(&FLUORESCENCE, ramp_position(de2000)),
+            Self::Unreachable(de2000) => ramp(&UNREACHABLE, ramp_position(de2000)),
             Self::NoColor => NO_COLOR,
         }
     }
 }
 
 /// Where on a ramp a difference is, 0..=1: each step looks like the same factor.
-pub(super) fn place(de2000: f64) -> f64 {
+pub(super) fn ramp_position(de2000: f64) -> f64 {
     (de2000.ln_1p() / FULL_DE2000.ln_1p()).clamp(0.0, 1.0)
 }
 
 /// A color of a ramp, by straight lines between its stops.
-fn ramp(stops: &[[u8; 3]], place: f64) -> [u8; 3] {
+fn ramp(stops: &[[u8; 3]], share: f64) -> [u8; 3] {
     let last = stops.len() - 1;
-    let position = place * last as f64;
+    let position = share * last as f64;
     let index = (1..last).filter(|&i| i as f64 <= position).count();
     let share = position - index as f64;
     let (a, b) = (stops[index], stops[index + 1]);
@@ -65,7 +67,7 @@ mod tests {
     #[test]
     fn each_ramp_falls_in_lightness() {
         for heat in [Heat::Fluorescence, Heat::Unreachable] {
-            let mut lumas = (0..=60).map(|i| luma(heat(f64::from(i) / 2.0).color()));
+            let mut lumas = (0..=60).map(|i| luma(heat(f64::from(i) / 2.0).color(0.0)));
             let first = lumas.next().unwrap();
             lumas.fold(first, |before, l| {
                 assert!(l < before, "{l} {before}");
@@ -76,8 +78,8 @@ mod tests {
 
     #[test]
     fn ramps_begin_and_end_at_their_stops() {
-        assert_eq!(Heat::Fluorescence(0.0).color(), FLUORESCENCE[0]);
-        assert_eq!(Heat::Fluorescence(1e9).color(), FLUORESCENCE[3]);
-        assert_eq!(Heat::Unreachable(f64::INFINITY).color(), UNREACHABLE[2]);
+        assert_eq!(Heat::Fluorescence(0.0).color(0.0), FLUORESCENCE[0]);
+        assert_eq!(Heat::Fluorescence(1e9).color(0.0), FLUORESCENCE[3]);
+        assert_eq!(Heat::Unreachable(f64::INFINITY).color(0.0), UNREACHABLE[2]);
     }
 }

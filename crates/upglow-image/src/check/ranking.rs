@@ -43,8 +43,8 @@ impl<T: Ranked, const N: usize> Ranking<T, N> {
             }
             self.found.remove(twin);
         }
-        let place = self.found.partition_point(|other| other.order(&item) == Ordering::Less);
-        self.found.insert(place, item);
+        let index = self.found.partition_point(|other| other.order(&item) == Ordering::Less);
+        self.found.insert(index, item);
         self.found.truncate(N);
     }
 

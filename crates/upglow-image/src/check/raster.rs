@@ -2,10 +2,11 @@
 
 /// 8-bit sRGB, row by row from the top.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Raster {
+pub(super) struct Raster {
     width: u32,
     height: u32,
-    pixels: Vec<[u8; 3]>,
+    /// `[row][column]`, red, green, blue.
+    pub(super) pixels: Vec<[u8; 3]>,
 }
 
 impl Raster {
@@ -17,22 +18,17 @@ impl Raster {
     }
 
     /// Pixels in a row.
-    pub fn width(&self) -> u32 {
+    pub(super) fn width(&self) -> u32 {
         self.width
     }
 
     /// Rows.
-    pub fn height(&self) -> u32 {
+    pub(super) fn height(&self) -> u32 {
         self.height
     }
 
-    /// `[row][column]`, red, green, blue.
-    pub fn pixels(&self) -> &[[u8; 3]] {
-        &self.pixels
-    }
-
     /// The picture as a PNG file.
-    pub fn to_png(&self) -> Vec<u8> {
+    pub(super) fn to_png(&self) -> Vec<u8> {
         let mut bytes = Vec::new();
         let mut encoder = png::Encoder::new(&mut bytes, self.width, self.height);
         encoder.set_color(png::ColorType::Rgb);

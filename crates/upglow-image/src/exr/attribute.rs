@@ -2,12 +2,16 @@
 
 use std::collections::BTreeMap;
 
+use upglow_color::RgbSpace;
+
+use crate::rounding::to_single;
+
 /// The attributes of one image, by name; a file states each once, sorted.
-pub type Attributes = BTreeMap<String, Attribute>;
+pub(crate) type Attributes = BTreeMap<String, Attribute>;
 
 /// The value of an attribute.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Attribute {
+pub(crate) enum Attribute {
     /// `string`: text; OpenEXR states no encoding, this program reads and writes UTF-8.
     Text(String),
     /// `float`.
@@ -33,7 +37,7 @@ pub enum Attribute {
 
 impl Attribute {
     /// The name that OpenEXR gives this type.
-    pub fn kind(&self) -> &str {
+    pub(crate) fn kind(&self) -> &str {
         match self {
             Self::Text(_) => "string",
             Self::Float(_) => "float",
@@ -47,7 +51,7 @@ impl Attribute {
     }
 
     /// The text, if it is one.
-    pub fn as_text(&self) -> Option<&str> {
+    pub(crate) fn as_text(&self) -> Option<&str> {
         match self {
             Self::Text(text) => Some(text),
             _ => None,
@@ -85,6 +89,12 @@ impl Attribute {
             _ => Self::Other { kind: kind.into(), bytes },
         })
     }
+}
+
+/// The eight numbers of an RGB space.
+pub(crate) fn chromaticities(space: &RgbSpace) -> Attribute {
+    let [red, green, blue] = space.primaries();
+    Attribute::Chromaticities([red, green, blue, space.white()].map(|c| c.map(to_single)))
 }
 
 impl From<&str> for Attribute {

@@ -11,16 +11,11 @@ use exr::meta::attribute::{
 use exr::meta::header::Header as UnpackHeader;
 use half::slice::HalfFloatSliceExt;
 
-use crate::exr::header::{Channel, Header, Packing, Sample};
+use super::header::{Channel, Header, Sample};
 
 thread_local! {
-    static UNPACKING: Cell<bool> = const { Cell::new(false) };
-}
-
-/// Whether this thread unpacks a block just now: a panic in there becomes an error that says what
-/// is wrong with the file, so a program's panic hook need not speak of it.
-pub fn is_unpacking() -> bool {
-    UNPACKING.get()
+    /// Whether this thread unpacks a block just now.
+    pub(super) static UNPACKING: Cell<bool> = const { Cell::new(false) };
 }
 
 /// The most bytes that one block may take unpacked: 256 rows of 16,384 pixels in 64 float channels.
@@ -29,7 +24,7 @@ pub(crate) const MAX_BLOCK_BYTES: u64 = 1 << 30;
 /// A rectangle of the image at full resolution that is stored as one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Block {
-    /// Its place in the table of blocks.
+    /// Its number in the table of blocks.
     pub(crate) index: usize,
     /// First column and row, from 0.
     pub(crate) origin: [usize; 2],
@@ -47,7 +42,7 @@ pub(crate) struct Blocks {
 impl Blocks {
     pub(crate) fn of(header: &Header) -> Self {
         let rows = [header.size[0], header.packing.rows()];
-        Self { image: header.size, block: header.tiles.map_or(rows, |tiles| tiles.size) }
+        Self { image: header.size, block: header.tiles.unwrap_or(rows) }
     }
 
     /// Columns and rows of the largest block.
@@ -73,10 +68,10 @@ impl Blocks {
         down.flat_map(move |y| left_to_right.clone().map(move |x| self.at([x, y], across)))
     }
 
-    fn at(self, place: [usize; 2], across: usize) -> Block {
-        let origin = [0, 1].map(|k| place[k] * self.block[k]);
+    fn at(self, position: [usize; 2], across: usize) -> Block {
+        let origin = [0, 1].map(|k| position[k] * self.block[k]);
         let size = [0, 1].map(|k| self.block[k].min(self.image[k] - origin[k]));
-        Block { index: place[1] * across + place[0], origin, size }
+        Block { index: position[1] * across + position[0], origin, size }
     }
 }
 
@@ -106,15 +101,15 @@ impl Unpacker {
         };
         let size = Vec2(header.size[0], header.size[1]);
         let channels = header.channels.iter().map(channel).collect();
-        let blocks = header.tiles.map_or(BlockDescription::ScanLines, |tiles| {
+        let blocks = header.tiles.map_or(BlockDescription::ScanLines, |[width, height]| {
             BlockDescription::Tiles(TileDescription {
-                tile_size: Vec2(tiles.size[0], tiles.size[1]),
+                tile_size: Vec2(width, height),
                 level_mode: LevelMode::Singular,
                 rounding_mode: RoundingMode::Down,
             })
         });
         let header = UnpackHeader::new("part".into(), size, channels).with_encoding(
-            compression(header.packing),
+            header.packing.method(),
             blocks,
             LineOrder::Increasing,
         );
@@ -161,37 +156,19 @@ fn check_dwa(packed: &[u8], whole: usize) -> Result<(), String> {
     }
 }
 
-fn compression(packing: Packing) -> Compression {
-    match packing {
-        Packing::None => Compression::Uncompressed,
-        Packing::Rle => Compression::RLE,
-        Packing::Zips => Compression::ZIP1,
-        Packing::Zip => Compression::ZIP16,
-        Packing::Piz => Compression::PIZ,
-        Packing::Pxr24 => Compression::PXR24,
-        Packing::B44 => Compression::B44,
-        Packing::B44a => Compression::B44A,
-        Packing::Dwaa => Compression::DWAA(None),
-        Packing::Dwab => Compression::DWAB(None),
-    }
-}
-
 /// The samples in `bytes`, as single precision.
 pub(crate) fn decode(sample: Sample, bytes: &[u8], to: &mut [f32]) {
+    fn fill<const N: usize>(to: &mut [f32], bytes: &[u8], value: impl Fn([u8; N]) -> f32) {
+        to.iter_mut().zip(bytes.as_chunks().0).for_each(|(to, b)| *to = value(*b));
+    }
     match sample {
         Sample::Half => {
             let halves: Vec<half::f16> =
                 bytes.as_chunks().0.iter().map(|b| half::f16::from_le_bytes(*b)).collect();
             halves.convert_to_f32_slice(to);
         }
-        Sample::Float => {
-            let words = bytes.as_chunks().0;
-            to.iter_mut().zip(words).for_each(|(v, b)| *v = f32::from_le_bytes(*b));
-        }
-        Sample::Uint => {
-            let words = bytes.as_chunks().0;
-            to.iter_mut().zip(words).for_each(|(v, b)| *v = u32::from_le_bytes(*b) as f32);
-        }
+        Sample::Float => fill(to, bytes, f32::from_le_bytes),
+        Sample::Uint => fill(to, bytes, |b| u32::from_le_bytes(b) as f32),
     }
 }
 

@@ -5,8 +5,10 @@
 
 use std::io::Read;
 
-use crate::exr::attribute::{Attribute, Attributes};
-use crate::exr::error::ExrError;
+use exr::compression::Compression;
+
+use super::attribute::{Attribute, Attributes};
+use super::error::ExrError;
 
 /// The first four bytes of every OpenEXR file.
 pub(crate) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
@@ -42,7 +44,7 @@ pub enum Sample {
 
 impl Sample {
     /// Bytes of one sample.
-    pub fn bytes(self) -> usize {
+    pub(crate) fn bytes(self) -> usize {
         match self {
             Self::Half => 2,
             Self::Float | Self::Uint => 4,
@@ -60,35 +62,35 @@ impl Sample {
 
 /// One channel of an image.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Channel {
+pub(crate) struct Channel {
     /// Its name; a point separates layers.
-    pub name: String,
+    pub(crate) name: String,
     /// How it stores its samples.
-    pub sample: Sample,
+    pub(crate) sample: Sample,
     /// Whether B44 compression packs it as it is, and not as its logarithm.
     pub(crate) is_linear: bool,
 }
 
 /// A rectangle of pixels, both corners included; OpenEXR counts from any origin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Window {
+pub(crate) struct Window {
     /// Column and row of the first pixel.
-    pub min: [i32; 2],
+    pub(crate) min: [i32; 2],
     /// Column and row of the last pixel.
-    pub max: [i32; 2],
+    pub(crate) max: [i32; 2],
 }
 
 impl Window {
     /// The window of a picture of this width and height whose first pixel is (0, 0).
     ///
     /// A side of 0 or beyond 131,072 is cut to that range: no file holds it.
-    pub fn of_size(size: [usize; 2]) -> Self {
+    pub(crate) fn of_size(size: [usize; 2]) -> Self {
         let last = |side: usize| i32::try_from(side.clamp(1, MAX_SIDE) - 1).unwrap_or(i32::MAX);
         Self { min: [0, 0], max: size.map(last) }
     }
 
     /// Width and height; `None` unless both are 1 or more.
-    pub fn size(self) -> Option<[usize; 2]> {
+    pub(crate) fn size(self) -> Option<[usize; 2]> {
         let side = |k: usize| {
             let pixels = i64::from(self.max[k]) - i64::from(self.min[k]) + 1;
             usize::try_from(pixels).ok().filter(|&side| side > 0)
@@ -108,54 +110,45 @@ impl Window {
     }
 }
 
-/// How blocks are packed.
+/// How blocks are packed: the code that a file has for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Packing {
-    None,
-    Rle,
-    Zips,
-    Zip,
-    Piz,
-    Pxr24,
-    B44,
-    B44a,
-    Dwaa,
-    Dwab,
-}
+pub(crate) struct Packing(u8);
 
-const PACKINGS: [Packing; 10] = [
-    Packing::None,
-    Packing::Rle,
-    Packing::Zips,
-    Packing::Zip,
-    Packing::Piz,
-    Packing::Pxr24,
-    Packing::B44,
-    Packing::B44a,
-    Packing::Dwaa,
-    Packing::Dwab,
+/// The methods by their codes.
+const METHODS: [Compression; 10] = [
+    Compression::Uncompressed,
+    Compression::RLE,
+    Compression::ZIP1,
+    Compression::ZIP16,
+    Compression::PIZ,
+    Compression::PXR24,
+    Compression::B44,
+    Compression::B44A,
+    Compression::DWAA(None),
+    Compression::DWAB(None),
 ];
 
+/// Rows of a block where the image is stored by rows, by the codes of the methods.
+const BLOCK_ROWS: [usize; 10] = [1, 1, 1, 16, 32, 16, 32, 32, 32, 256];
+
 impl Packing {
+    pub(crate) const NONE: Self = Self(0);
+    /// ZIP of each row by itself.
+    pub(crate) const ZIPS: Self = Self(2);
+    pub(crate) const ZIP: Self = Self(3);
+
+    fn of_code(code: u8) -> Option<Self> {
+        (usize::from(code) < METHODS.len()).then_some(Self(code))
+    }
+
+    pub(crate) fn method(self) -> Compression {
+        METHODS[usize::from(self.0)]
+    }
+
     /// Rows of a block where the image is stored by rows.
     pub(crate) fn rows(self) -> usize {
-        match self {
-            Self::None | Self::Rle | Self::Zips => 1,
-            Self::Zip | Self::Pxr24 => 16,
-            Self::Piz | Self::B44 | Self::B44a | Self::Dwaa => 32,
-            Self::Dwab => 256,
-        }
+        BLOCK_ROWS[usize::from(self.0)]
     }
-
-    fn code(self) -> u8 {
-        u8::try_from(PACKINGS.iter().position(|&p| p == self).unwrap_or(0)).unwrap_or(0)
-    }
-}
-
-/// Tiles: width and height of one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Tiles {
-    pub(crate) size: [usize; 2],
 }
 
 /// What a part of a file says of itself.
@@ -167,7 +160,8 @@ pub(crate) struct Header {
     pub(crate) display: Window,
     /// Width and height of the data window.
     pub(crate) size: [usize; 2],
-    pub(crate) tiles: Option<Tiles>,
+    /// Width and height of a tile, where the image is stored by tiles.
+    pub(crate) tiles: Option<[usize; 2]>,
     /// Blocks of all levels; stated where a file has many parts.
     pub(crate) chunk_count: Option<usize>,
     /// Name of the part, where there is one.
@@ -265,8 +259,8 @@ fn build(raw: Vec<(String, String, Vec<u8>)>, version: u32) -> Result<Header, Ex
         return Err(ExrError::header("dataWindow", format!("{min:?} to {max:?}"), expected));
     };
     let has = |name: &str| raw.iter().any(|(n, ..)| n == name);
-    let kind = has("type").then(|| value("type", "string")).transpose()?;
-    let tiled = match kind {
+    let stated = |name, kind| has(name).then(|| value(name, kind)).transpose();
+    let tiled = match stated("type", "string")? {
         Some(b"scanlineimage") => false,
         Some(b"tiledimage") => true,
         Some(other) => {
@@ -276,9 +270,8 @@ fn build(raw: Vec<(String, String, Vec<u8>)>, version: u32) -> Result<Header, Ex
         None => version & TILED != 0,
     };
     let tiles = tiled.then(|| parse_tiles(value("tiles", "tiledesc")?)).transpose()?;
-    let count = has("chunkCount").then(|| value("chunkCount", "int")).transpose()?;
-    let chunk_count = count.map(parse_count).transpose()?;
-    let name = has("name").then(|| value("name", "string")).transpose()?;
+    let chunk_count = stated("chunkCount", "int")?.map(parse_count).transpose()?;
+    let name = stated("name", "string")?;
     Ok(Header {
         channels: parse_channels(value("channels", "chlist")?)?,
         packing: parse_packing(value("compression", "compression")?)?,
@@ -333,14 +326,13 @@ fn parse_count(bytes: &[u8]) -> Result<usize, ExrError> {
 }
 
 fn parse_packing(bytes: &[u8]) -> Result<Packing, ExrError> {
-    let known = |code: u8| PACKINGS.get(usize::from(code)).copied();
-    let packing = bytes.first().filter(|_| bytes.len() == 1).and_then(|&code| known(code));
-    packing.ok_or_else(|| {
+    let code = bytes.first().filter(|_| bytes.len() == 1);
+    code.and_then(|&code| Packing::of_code(code)).ok_or_else(|| {
         ExrError::header("compression", format!("code {bytes:?}"), "a code from 0 to 9")
     })
 }
 
-fn parse_tiles(bytes: &[u8]) -> Result<Tiles, ExrError> {
+fn parse_tiles(bytes: &[u8]) -> Result<[usize; 2], ExrError> {
     let wrong = |found: String| {
         ExrError::header("tiles", found, format!("width and height from 1 to {MAX_SIDE}"))
     };
@@ -351,7 +343,7 @@ fn parse_tiles(bytes: &[u8]) -> Result<Tiles, ExrError> {
     if size.iter().any(|side| !(1..=MAX_SIDE).contains(side)) {
         return Err(wrong(format!("{} by {}", size[0], size[1])));
     }
-    Ok(Tiles { size })
+    Ok(size)
 }
 
 /// Bytes after the name of a channel: sample type, flag and padding, sampling of x and y.
@@ -456,7 +448,7 @@ pub(crate) fn print(
     let mut all = attributes.clone();
     all.extend([
         ("channels".into(), other("chlist", print_channels(channels))),
-        ("compression".into(), other("compression", vec![packing.code()])),
+        ("compression".into(), other("compression", vec![packing.0])),
         ("dataWindow".into(), other("box2i", data.to_bytes())),
         ("displayWindow".into(), other("box2i", display.to_bytes())),
         ("lineOrder".into(), other("lineOrder", vec![0])),
@@ -513,7 +505,7 @@ mod tests {
         ]);
         let display = Window::of_size([7, 9]);
         let data = Window { min: [-1, 2], max: [3, 8] };
-        let bytes = print(&channels, Packing::Zip, [data, display], &attributes);
+        let bytes = print(&channels, Packing::ZIP, [data, display], &attributes);
         (channels, attributes, bytes)
     }
 
@@ -525,7 +517,7 @@ mod tests {
         assert_eq!(headers.end, bytes.len() as u64);
         assert_eq!((header.size, header.data.min), ([5, 7], [-1, 2]));
         assert_eq!((&header.channels, &header.attributes), (&channels, &attributes));
-        assert_eq!((header.packing, header.display.max), (Packing::Zip, [6, 8]));
+        assert_eq!((header.packing, header.display.max), (Packing::ZIP, [6, 8]));
     }
 
     #[test]
@@ -540,7 +532,7 @@ mod tests {
     #[test]
     fn sizes_that_no_picture_has_are_refused() {
         let message = |window: Window| {
-            let bytes = print(&[], Packing::None, [window; 2], &Attributes::new());
+            let bytes = print(&[], Packing::NONE, [window; 2], &Attributes::new());
             Headers::read(&bytes[..]).unwrap_err().to_string()
         };
         let huge = message(Window { min: [0, 0], max: [i32::MAX, 3] });

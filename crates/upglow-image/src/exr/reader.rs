@@ -7,10 +7,10 @@ use std::path::Path;
 
 use rayon::prelude::*;
 
-use crate::exr::attribute::Attributes;
-use crate::exr::blocks::{Block, Blocks, MAX_BLOCK_BYTES, Unpacker, decode, pixel_bytes};
-use crate::exr::error::ExrError;
-use crate::exr::header::{Channel, Header, Headers, Sample, Window};
+use super::attribute::Attributes;
+use super::blocks::{Block, Blocks, MAX_BLOCK_BYTES, UNPACKING, Unpacker, decode, pixel_bytes};
+use super::error::ExrError;
+use super::header::{Channel, Header, Headers, Sample, Window};
 
 /// One image of an OpenEXR file, opened for reading.
 ///
@@ -36,8 +36,14 @@ impl ExrReader {
     /// # Errors
     ///
     /// [`ExrError`] says what was found and what was expected.
-    pub fn open(path: &Path) -> Result<Self, ExrError> {
-        Self::open_with(path, |_| Ok(0))
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, ExrError> {
+        Self::open_with(path.as_ref(), |_| Ok(0))
+    }
+
+    /// Whether this thread unpacks a block just now: a panic in there becomes an error that says what
+    /// is wrong with the file, so a program's panic hook need not speak of it.
+    pub fn is_unpacking() -> bool {
+        UNPACKING.get()
     }
 
     /// Opens the part that `choose` picks by number.
@@ -80,29 +86,24 @@ impl ExrReader {
         self.header.size
     }
 
+    /// Names of the channels, as the file orders them: by name.
+    pub fn channel_names(&self) -> impl ExactSizeIterator<Item = &str> {
+        self.channels().iter().map(|channel| channel.name.as_str())
+    }
+
     /// The channels, as the file orders them: by name.
-    pub fn channels(&self) -> &[Channel] {
+    pub(crate) fn channels(&self) -> &[Channel] {
         &self.header.channels
     }
 
     /// The attributes that are not about how pixels are stored.
-    pub fn attributes(&self) -> &Attributes {
+    pub(crate) fn attributes(&self) -> &Attributes {
         &self.header.attributes
     }
 
-    /// Where the pixels lie.
-    pub fn data_window(&self) -> Window {
-        self.header.data
-    }
-
-    /// The part of the plane that is meant to be seen.
-    pub fn display_window(&self) -> Window {
-        self.header.display
-    }
-
-    /// The name of the part, where there is one.
-    pub fn name(&self) -> Option<&str> {
-        self.header.name.as_deref()
+    /// Where the pixels lie, and the part of the plane that is meant to be seen.
+    pub(crate) fn windows(&self) -> [Window; 2] {
+        [self.header.data, self.header.display]
     }
 
     /// Rows that are stored together: reading fewer at once unpacks a block more than once.
@@ -116,12 +117,12 @@ impl ExrReader {
     ///
     /// [`ExrError::NoChannel`] names some that there are.
     pub fn channel(&self, name: &str) -> Result<usize, ExrError> {
-        let names = || self.channels().iter().map(|c| c.name.as_str());
-        names().position(|found| found == name).ok_or_else(|| {
+        let mut names = self.channel_names();
+        names.position(|found| found == name).ok_or_else(|| {
             /// A line that a person reads.
             const SHOWN: usize = 8;
-            let more = if names().count() > SHOWN { ", …" } else { "" };
-            let some = names().take(SHOWN).collect::<Vec<_>>().join(", ");
+            let more = if self.channels().len() > SHOWN { ", …" } else { "" };
+            let some = self.channel_names().take(SHOWN).collect::<Vec<_>>().join(", ");
             ExrError::NoChannel { name: name.into(), expected: some + more }
         })
     }
@@ -158,7 +159,7 @@ impl ExrReader {
             let (columns, rows) = ([columns.start, columns.end], [rows.start, rows.end]);
             return Err(ExrError::Outside { columns, rows, width, height });
         }
-        let placed = channels.iter().map(|&c| self.placed(c)).collect::<Result<Vec<_>, _>>()?;
+        let samples = channels.iter().map(|&c| self.samples(c)).collect::<Result<Vec<_>, _>>()?;
         let region = Region { columns, rows };
         let mut planes = vec![vec![0.0; region.columns.len() * region.rows.len()]; channels.len()];
         for line in self.block_lines(&region) {
@@ -171,8 +172,8 @@ impl ExrReader {
                 .map(|(block, bytes)| Ok((block, self.unpack(block, bytes)?)))
                 .collect::<Result<Vec<_>, ExrError>>()?;
             for (block, bytes) in unpacked {
-                for (plane, place) in planes.iter_mut().zip(&placed) {
-                    region.copy(block, &bytes, place, plane);
+                for (plane, samples) in planes.iter_mut().zip(&samples) {
+                    region.copy(block, &bytes, samples, plane);
                 }
             }
         }
@@ -191,13 +192,13 @@ impl ExrReader {
     }
 
     /// Where in a pixel's row the samples of a channel lie.
-    fn placed(&self, channel: usize) -> Result<Placed, ExrError> {
+    fn samples(&self, channel: usize) -> Result<ChannelSamples, ExrError> {
         let Some(found) = self.header.channels.get(channel) else {
             let expected = format!("0 to {}", self.header.channels.len().saturating_sub(1));
             return Err(ExrError::NoChannel { name: format!("number {channel}"), expected });
         };
         let before = self.header.channels[..channel].iter().map(|c| c.sample.bytes()).sum();
-        Ok(Placed { before, sample: found.sample, pixel: pixel_bytes(&self.header) })
+        Ok(ChannelSamples { before, sample: found.sample, pixel: pixel_bytes(&self.header) })
     }
 
     /// The packed bytes of a block.
@@ -207,9 +208,9 @@ impl ExrReader {
         let head = self.block_head(block);
         let mut found = vec![0; head.len() + 4];
         self.read_at(at, &mut found, block)?;
-        let (place, size) = found.split_at(head.len());
-        if place != head {
-            return Err(damaged(self, format!("it is of {place:?}"), format!("{head:?}")));
+        let (position, size) = found.split_at(head.len());
+        if position != head {
+            return Err(damaged(self, format!("it is of {position:?}"), format!("{head:?}")));
         }
         let size = size.first_chunk().copied().map_or(0, u32::from_le_bytes) as usize;
         let whole = block.size[0] * block.size[1] * pixel_bytes(&self.header);
@@ -241,13 +242,13 @@ impl ExrReader {
     fn block_head(&self, block: Block) -> Vec<u8> {
         let number = |n: usize| i32::try_from(n).unwrap_or(i32::MAX);
         let [width, height] = self.blocks.block_size();
-        let place = match self.header.tiles {
+        let position = match self.header.tiles {
             Some(_) => {
                 vec![number(block.origin[0] / width), number(block.origin[1] / height), 0, 0]
             }
             None => vec![self.header.data.min[1].saturating_add(number(block.origin[1]))],
         };
-        self.part.into_iter().chain(place).flat_map(i32::to_le_bytes).collect()
+        self.part.into_iter().chain(position).flat_map(i32::to_le_bytes).collect()
     }
 
     fn read_at(&mut self, at: u64, to: &mut [u8], block: Block) -> Result<(), ExrError> {
@@ -263,7 +264,11 @@ impl ExrReader {
 
     fn unpack(&self, block: Block, packed: Vec<u8>) -> Result<Vec<u8>, ExrError> {
         self.unpacker.unpack(packed, block).map_err(|found| {
-            self.damaged(block, found, format!("{:?} data of its size", self.header.packing))
+            self.damaged(
+                block,
+                found,
+                format!("{:?} data of its size", self.header.packing.method()),
+            )
         })
     }
 
@@ -297,7 +302,7 @@ fn table_length(part: &Header, multi_part: bool) -> Result<u64, ExrError> {
 
 /// A channel inside the rows of a block.
 #[derive(Clone, Copy, Debug)]
-struct Placed {
+struct ChannelSamples {
     /// Bytes of one pixel in the channels before it.
     before: usize,
     sample: Sample,
@@ -313,20 +318,20 @@ struct Region {
 
 impl Region {
     /// Copies what a block has of this region into one channel's samples.
-    fn copy(&self, block: Block, bytes: &[u8], placed: &Placed, plane: &mut [f32]) {
+    fn copy(&self, block: Block, bytes: &[u8], of: &ChannelSamples, plane: &mut [f32]) {
         let overlap = |k: usize, range: &Range<usize>| {
             let end = block.origin[k] + block.size[k];
             range.start.max(block.origin[k])..range.end.min(end)
         };
         let (columns, rows) = (overlap(0, &self.columns), overlap(1, &self.rows));
-        let (width, sample) = (block.size[0], placed.sample.bytes());
+        let (width, sample) = (block.size[0], of.sample.bytes());
         for y in rows {
-            let row = (y - block.origin[1]) * width * placed.pixel + placed.before * width;
+            let row = (y - block.origin[1]) * width * of.pixel + of.before * width;
             let from = row + (columns.start - block.origin[0]) * sample;
             let to =
                 (y - self.rows.start) * self.columns.len() + columns.start - self.columns.start;
             let samples = &bytes[from..from + columns.len() * sample];
-            decode(placed.sample, samples, &mut plane[to..to + columns.len()]);
+            decode(of.sample, samples, &mut plane[to..to + columns.len()]);
         }
     }
 }

@@ -6,9 +6,10 @@ use std::path::Path;
 use half::f16;
 use rayon::prelude::*;
 use upglow::{Aside, AsideError};
+use upglow_color::RgbSpace;
 
-use crate::exr::attribute::Attributes;
-use crate::exr::header::{Channel, MAX_SIDE, Packing, Sample, Window, is_name, is_reserved, print};
+use super::attribute::{Attributes, chromaticities};
+use super::header::{Channel, MAX_SIDE, Packing, Sample, Window, is_name, is_reserved, print};
 
 /// How blocks of rows are packed; all are without loss.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -25,9 +26,9 @@ pub enum Compression {
 impl Compression {
     fn packing(self) -> Packing {
         match self {
-            Self::None => Packing::None,
-            Self::Zips => Packing::Zips,
-            Self::Zip => Packing::Zip,
+            Self::None => Packing::NONE,
+            Self::Zips => Packing::ZIPS,
+            Self::Zip => Packing::ZIP,
         }
     }
 }
@@ -44,14 +45,15 @@ pub struct ExrDescription {
     /// How blocks are packed.
     pub compression: Compression,
     /// What the file states besides.
-    pub attributes: Attributes,
+    pub(crate) attributes: Attributes,
     /// Where the picture lies, and what of the plane is seen; `None` puts its first pixel at
     /// (0, 0) and shows all of it.
-    pub windows: Option<[Window; 2]>,
+    pub(crate) windows: Option<[Window; 2]>,
 }
 
 impl ExrDescription {
     /// An image of `size` with these channels: half, ZIP, no attributes.
+    #[must_use]
     pub fn new(size: [usize; 2], channels: impl IntoIterator<Item = impl Into<String>>) -> Self {
         Self {
             size,
@@ -61,6 +63,25 @@ impl ExrDescription {
             attributes: Attributes::new(),
             windows: None,
         }
+    }
+
+    /// The same image, its samples stored so.
+    #[must_use]
+    pub fn with_sample(self, sample: Sample) -> Self {
+        Self { sample, ..self }
+    }
+
+    /// The same image, packed so.
+    #[must_use]
+    pub fn with_compression(self, compression: Compression) -> Self {
+        Self { compression, ..self }
+    }
+
+    /// The same image; the file says that its colors are of this RGB space.
+    #[must_use]
+    pub fn with_space(mut self, space: &RgbSpace) -> Self {
+        self.attributes.insert("chromaticities".into(), chromaticities(space));
+        self
     }
 }
 
@@ -79,12 +100,6 @@ pub enum WriteExrError {
     Size {
         /// Width and height.
         found: [usize; 2],
-    },
-    /// The data window is not of the picture's size.
-    #[error("data window {found:?}, expected one of the picture's size")]
-    Window {
-        /// The window.
-        found: Window,
     },
     /// A channel has no name, a name that is too long, or one with a zero byte.
     #[error("channel or attribute name {found:?}, expected 1 to 255 characters")]
@@ -177,7 +192,10 @@ impl ExrWriter {
     /// # Errors
     ///
     /// [`WriteExrError`] if the description makes no file or the path cannot be written.
-    pub fn create(path: &Path, description: ExrDescription) -> Result<Self, WriteExrError> {
+    pub fn create(
+        path: impl AsRef<Path>,
+        description: ExrDescription,
+    ) -> Result<Self, WriteExrError> {
         let windows = check(&description)?;
         let order = sorted(&description.channels)?;
         let channels: Vec<Channel> = order
@@ -192,7 +210,7 @@ impl ExrWriter {
         let header = print(&channels, packing, windows, &description.attributes);
         let table = header.len() as u64;
         let count = description.size[1].div_ceil(packing.rows());
-        let mut file = Aside::create(path)?;
+        let mut file = Aside::create(path.as_ref())?;
         file.write_all(&header)?;
         file.write_all(&vec![0; 8 * count])?;
         Ok(Self {
@@ -334,9 +352,7 @@ fn check(description: &ExrDescription) -> Result<[Window; 2], WriteExrError> {
         return Err(WriteExrError::Reserved { found: found.clone() });
     }
     let windows = description.windows.unwrap_or([Window::of_size(found); 2]);
-    if windows[0].size() != Some(found) {
-        return Err(WriteExrError::Window { found: windows[0] });
-    }
+    debug_assert_eq!(windows[0].size(), Some(found), "a data window of another size");
     Ok(windows)
 }
 
@@ -351,15 +367,12 @@ fn sorted(names: &[String]) -> Result<Vec<usize>, WriteExrError> {
 }
 
 fn encode(sample: Sample, values: &[f32], to: &mut [u8]) {
+    fn fill<const N: usize>(to: &mut [u8], values: &[f32], bytes: impl Fn(f32) -> [u8; N]) {
+        to.as_chunks_mut().0.iter_mut().zip(values).for_each(|(to, v)| *to = bytes(*v));
+    }
     match sample {
-        Sample::Half => {
-            let words = to.as_chunks_mut().0;
-            words.iter_mut().zip(values).for_each(|(b, v)| *b = f16::from_f32(*v).to_le_bytes());
-        }
-        Sample::Float | Sample::Uint => {
-            let words = to.as_chunks_mut().0;
-            words.iter_mut().zip(values).for_each(|(b, v)| *b = v.to_le_bytes());
-        }
+        Sample::Half => fill(to, values, |v| f16::from_f32(v).to_le_bytes()),
+        Sample::Float | Sample::Uint => fill(to, values, f32::to_le_bytes),
     }
 }
 

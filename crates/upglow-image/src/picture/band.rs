@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::picture::encoding::Encoding;
+use super::encoding::Encoding;
 use crate::rounding::to_single;
 
 /// Some whole rows of a picture.

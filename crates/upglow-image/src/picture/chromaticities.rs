@@ -2,9 +2,6 @@
 
 use upglow_color::RgbSpace;
 
-use crate::exr::attribute::Attribute;
-use crate::rounding::to_single;
-
 /// Files round chromaticities to four or five digits, and single precision to seven. No two
 /// built-in spaces are nearer to each other than 0.005 in some number.
 const SAME: f64 = 2e-4;
@@ -26,13 +23,6 @@ pub(crate) fn space(primaries: [[f64; 2]; 3], white: [f64; 2]) -> Option<RgbSpac
 pub(crate) fn space_of_singles(found: [[f32; 2]; 4]) -> Option<RgbSpace> {
     let [red, green, blue, white] = found.map(|c| c.map(f64::from));
     space([red, green, blue], white)
-}
-
-/// The eight numbers of a space as an OpenEXR attribute states them.
-pub fn chromaticities(space: &RgbSpace) -> Attribute {
-    let [red, green, blue] = space.primaries();
-    let singles = [red, green, blue, space.white()].map(|c| c.map(to_single));
-    Attribute::Chromaticities(singles)
 }
 
 #[cfg(test)]

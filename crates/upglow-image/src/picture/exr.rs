@@ -5,12 +5,13 @@ use std::path::Path;
 
 use upglow_color::RgbSpace;
 
-use super::{Alpha, Facts, PictureError, Pixels};
+use super::chromaticities::space_of_singles;
+use super::encoding::Encoding;
+use super::error::PictureError;
+use super::source::{Alpha, Facts, Pixels, Source};
 use crate::exr::attribute::Attribute;
 use crate::exr::header::{Channel, Header};
 use crate::exr::reader::ExrReader;
-use crate::picture::chromaticities::space_of_singles;
-use crate::picture::encoding::Encoding;
 
 #[derive(Debug)]
 pub(super) struct ExrPicture {
@@ -21,10 +22,10 @@ pub(super) struct ExrPicture {
 }
 
 impl ExrPicture {
-    pub(super) fn open(path: &Path, layer: Option<&str>) -> Result<(Self, Facts), PictureError> {
+    pub(super) fn open(path: &Path) -> Result<(Box<dyn Source>, Facts), PictureError> {
         let mut prefix = String::new();
         let reader = ExrReader::open_with(path, |parts| {
-            let chosen = choose(parts, layer)?;
+            let chosen = choose(parts)?;
             prefix = chosen.prefix;
             Ok::<_, PictureError>(chosen.part)
         })?;
@@ -39,13 +40,15 @@ impl ExrPicture {
             space: space(&reader),
             encoding: Some(Encoding::Linear),
             alpha: alpha.map(|_| Alpha::Associated),
-            windows: Some([reader.data_window(), reader.display_window()]),
+            windows: Some(reader.windows()),
             block_rows: reader.block_rows(),
         };
-        Ok((Self { reader, colors, alpha }, facts))
+        Ok((Box::new(Self { reader, colors, alpha }), facts))
     }
+}
 
-    pub(super) fn read(&mut self, rows: Range<usize>) -> Result<Pixels, PictureError> {
+impl Source for ExrPicture {
+    fn read(&mut self, rows: Range<usize>) -> Result<Pixels, PictureError> {
         let [red, green, blue] = self.colors;
         let gray = red == green;
         let colors = if gray { vec![red] } else { vec![red, green, blue] };
@@ -67,11 +70,6 @@ struct Layer {
 }
 
 impl Layer {
-    fn is_named(&self, name: &str) -> bool {
-        let of_channels = self.prefix.strip_suffix('.') == Some(name);
-        of_channels || (self.prefix.is_empty() && self.part_name.as_deref() == Some(name))
-    }
-
     fn label(&self) -> String {
         match (self.prefix.strip_suffix('.'), &self.part_name) {
             (Some(layer), _) => layer.into(),
@@ -81,34 +79,28 @@ impl Layer {
     }
 }
 
-/// The layer of this name; without one the only plain R, G, B, or the only layer there is.
-fn choose(parts: &[Header], name: Option<&str>) -> Result<Layer, PictureError> {
+/// The only plain R, G, B, or the only layer there is.
+fn choose(parts: &[Header]) -> Result<Layer, PictureError> {
     let all: Vec<Layer> = parts.iter().enumerate().flat_map(|(i, part)| layers(i, part)).collect();
-    let only = |wanted: &dyn Fn(&Layer) -> bool| {
+    let only = |wanted: fn(&Layer) -> bool| {
         let mut fitting = all.iter().filter(|layer| wanted(layer));
         fitting.next().filter(|_| fitting.next().is_none()).cloned()
     };
-    let chosen = match name {
-        Some(name) => only(&|layer| layer.is_named(name)),
-        None => only(&|layer| layer.prefix.is_empty()).or_else(|| only(&|_| true)),
-    };
-    chosen.ok_or_else(|| not_chosen(parts, &all, name))
+    let chosen = only(|layer| layer.prefix.is_empty()).or_else(|| only(|_| true));
+    chosen.ok_or_else(|| not_chosen(parts, &all))
 }
 
-fn not_chosen(parts: &[Header], all: &[Layer], name: Option<&str>) -> PictureError {
+fn not_chosen(parts: &[Header], all: &[Layer]) -> PictureError {
     /// A line that a person reads.
     const SHOWN: usize = 12;
-    let channels = || parts.iter().flat_map(|part| part.channels.iter().map(|c| c.name.clone()));
-    let expected = match name {
-        Some(name) => format!("a layer or part {name:?} with R, G, B or Y"),
-        None if all.is_empty() => "R, G, B or Y".into(),
-        None => "one set of R, G, B, or the name of one of these layers".into(),
+    let (names, expected): (Vec<String>, _) = match all {
+        [] => {
+            let channels = parts.iter().flat_map(|part| &part.channels);
+            (channels.map(|c| c.name.clone()).take(SHOWN + 1).collect(), "R, G, B or Y")
+        }
+        _ => (all.iter().map(Layer::label).take(SHOWN + 1).collect(), "one set of R, G, B"),
     };
-    let found: Vec<String> = match all {
-        [] => channels().take(SHOWN + 1).collect(),
-        _ => all.iter().map(Layer::label).take(SHOWN + 1).collect(),
-    };
-    let mut found: Vec<String> = found.iter().map(|name| brief(name)).collect();
+    let mut found: Vec<String> = names.iter().map(|name| brief(name)).collect();
     if found.len() > SHOWN {
         found[SHOWN] = "…".into();
     }

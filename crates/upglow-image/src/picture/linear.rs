@@ -4,10 +4,13 @@ use std::path::Path;
 
 use rayon::prelude::*;
 use upglow_color::{Contract, Grid, Matrix3, RgbSpace};
+use upglow_fit::{Progress, Stopped, Watch};
 
-use crate::picture::band::Band;
-use crate::picture::encoding::Encoding;
-use crate::picture::{Alpha, Picture, PictureError};
+use super::Picture;
+use super::band::Band;
+use super::encoding::Encoding;
+use super::error::PictureError;
+use super::source::Alpha;
 use crate::rounding::to_single;
 
 /// What is taken for granted of files that do not say it themselves.
@@ -19,26 +22,9 @@ pub struct Assumed {
     pub encoding: Option<Encoding>,
 }
 
-/// Why a picture has no linear light.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum LinearPictureError {
-    /// The picture cannot be read.
-    #[error(transparent)]
-    Picture(#[from] PictureError),
-    /// Neither the file nor the caller names an RGB space.
-    #[error("the file does not name its RGB space, expected one to be given")]
-    Space,
-    /// Neither the file nor the caller says how light is stored.
-    #[error(
-        "the file does not say how it stores light, expected linear, srgb or a gamma to be given"
-    )]
-    Encoding,
-}
-
 /// A picture opened for reading its linear light from top to bottom.
 #[derive(Debug)]
-pub struct LinearPicture {
+pub(crate) struct LinearPicture {
     picture: Picture,
     space: RgbSpace,
     encoding: Encoding,
@@ -46,7 +32,7 @@ pub struct LinearPicture {
     conversion: Option<Matrix3>,
 }
 
-/// Two ways around the same matrices differ by this much in single precision; what is nearer to 0
+/// Two orders of the same matrices differ by this much in single precision; what is nearer to 0
 /// or 1 stands for it.
 const ROUNDING: f32 = 4e-6;
 
@@ -55,41 +41,57 @@ impl LinearPicture {
     ///
     /// # Errors
     ///
-    /// [`LinearPictureError`] if it cannot be read, or nobody says what its numbers mean.
-    pub fn open(path: &Path, assumed: &Assumed) -> Result<Self, LinearPictureError> {
+    /// [`PictureError`] if it cannot be read, or nobody says what its numbers mean.
+    pub(crate) fn open(path: &Path, assumed: &Assumed) -> Result<Self, PictureError> {
         let picture = Picture::open(path)?;
         let space = picture.space().or(assumed.space.as_ref()).cloned();
         let encoding = picture.encoding().or(assumed.encoding);
         Ok(Self {
             picture,
-            space: space.ok_or(LinearPictureError::Space)?,
-            encoding: encoding.ok_or(LinearPictureError::Encoding)?,
+            space: space.ok_or(PictureError::Space)?,
+            encoding: encoding.ok_or(PictureError::Encoding)?,
             conversion: None,
         })
     }
 
     /// The file's own facts.
-    pub fn picture(&self) -> &Picture {
+    pub(crate) fn picture(&self) -> &Picture {
         &self.picture
     }
 
     /// The RGB space that it is stored in, by itself or as assumed.
-    pub fn space(&self) -> &RgbSpace {
+    pub(crate) fn space(&self) -> &RgbSpace {
         &self.space
-    }
-
-    /// How it stores light, by itself or as assumed.
-    pub fn encoding(&self) -> Encoding {
-        self.encoding
     }
 
     /// Has the rows that follow converted to the RGB space of a contract, under the contract's
     /// light and adaptation. What rounding alone moves beyond 0 or 1 returns there.
-    pub fn convert_to(&mut self, contract: &Contract) {
+    pub(crate) fn convert_to(&mut self, contract: &Contract) {
         self.conversion = (self.space != contract.space).then(|| {
             let from = Contract { space: self.space.clone(), ..contract.clone() }.on(Grid::FIT);
             contract.on(Grid::FIT).rgb_from_xyz_matrix() * from.xyz_from_rgb_matrix()
         });
+    }
+
+    /// Hands the bands of the rest of the picture to `act`, each of about `rows` rows, and tells
+    /// `watch` after each.
+    pub(crate) fn for_each_band<E: From<PictureError> + From<Stopped>>(
+        &mut self,
+        rows: usize,
+        stage: &'static str,
+        watch: &dyn Watch,
+        mut act: impl FnMut(Band) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let [_, total] = self.picture.size();
+        while let Some(band) = self.read_band(rows)? {
+            if watch.stopped() {
+                return Err(Stopped.into());
+            }
+            let done = band.first_row + band.rows();
+            act(band)?;
+            watch.progress(Progress { stage, done, total });
+        }
+        Ok(())
     }
 
     /// The next rows, at least `rows` of them or what is left, as linear light in the space of the
@@ -99,7 +101,7 @@ impl LinearPicture {
     /// # Errors
     ///
     /// [`PictureError`] if the file is damaged there.
-    pub fn read_band(&mut self, rows: usize) -> Result<Option<Band>, PictureError> {
+    fn read_band(&mut self, rows: usize) -> Result<Option<Band>, PictureError> {
         let Some(mut band) = self.picture.read_band(rows)? else { return Ok(None) };
         band.decode(self.encoding);
         if let (Some(Alpha::Associated), Some(alpha)) = (self.picture.alpha(), &band.alpha) {

@@ -11,9 +11,10 @@ use png::{
 };
 use upglow_color::RgbSpace;
 
-use super::{Alpha, Facts, PictureError, Pixels, check_memory, check_size, pixels};
-use crate::picture::chromaticities::space;
-use crate::picture::encoding::Encoding;
+use super::chromaticities::space;
+use super::encoding::Encoding;
+use super::error::PictureError;
+use super::source::{Alpha, Facts, Pixels, Source, check_memory, check_size, pixels};
 
 pub(super) struct PngPicture {
     reader: Reader<BufReader<File>>,
@@ -34,7 +35,7 @@ impl fmt::Debug for PngPicture {
 const CHUNK_BYTES: usize = 64 << 20;
 
 impl PngPicture {
-    pub(super) fn open(path: &Path) -> Result<(Self, Facts), PictureError> {
+    pub(super) fn open(path: &Path) -> Result<(Box<dyn Source>, Facts), PictureError> {
         let limits = png::Limits { bytes: CHUNK_BYTES };
         let mut decoder = Decoder::new_with_limits(BufReader::new(File::open(path)?), limits);
         decoder.set_transformations(Transformations::EXPAND);
@@ -61,10 +62,21 @@ impl PngPicture {
         };
         let row = vec![0; usize::try_from(row_bytes).unwrap_or(0)];
         let deep = depth == BitDepth::Sixteen;
-        Ok((Self { reader, row, channels, deep, whole: None }, facts))
+        Ok((Box::new(Self { reader, row, channels, deep, whole: None }), facts))
     }
 
-    pub(super) fn read(&mut self, rows: Range<usize>) -> Result<Pixels, PictureError> {
+    fn whole(&mut self) -> Result<&[u8], PictureError> {
+        if self.whole.is_none() {
+            let mut bytes = vec![0; self.row.len() * self.reader.info().height as usize];
+            self.reader.next_frame(&mut bytes)?;
+            self.whole = Some(bytes);
+        }
+        Ok(self.whole.as_deref().unwrap_or(&[]))
+    }
+}
+
+impl Source for PngPicture {
+    fn read(&mut self, rows: Range<usize>) -> Result<Pixels, PictureError> {
         let mut samples = Vec::with_capacity(rows.len() * self.row.len());
         if self.reader.info().interlaced {
             let (row_bytes, deep) = (self.row.len(), self.deep);
@@ -77,15 +89,6 @@ impl PngPicture {
             }
         }
         Ok(pixels(&samples, self.channels))
-    }
-
-    fn whole(&mut self) -> Result<&[u8], PictureError> {
-        if self.whole.is_none() {
-            let mut bytes = vec![0; self.row.len() * self.reader.info().height as usize];
-            self.reader.next_frame(&mut bytes)?;
-            self.whole = Some(bytes);
-        }
-        Ok(self.whole.as_deref().unwrap_or(&[]))
     }
 }
 

@@ -11,9 +11,10 @@ use tiff::decoder::{ChunkType, Decoder, DecodingResult, DecodingSampleType, Limi
 use tiff::tags::Tag;
 use upglow_color::RgbSpace;
 
-use super::{Alpha, Facts, MAX_AT_ONCE, PictureError, Pixels, check_memory, check_size, pixels};
-use crate::picture::chromaticities::space;
-use crate::picture::encoding::Encoding;
+use super::chromaticities::space;
+use super::encoding::Encoding;
+use super::error::PictureError;
+use super::source::{Alpha, Facts, MAX_AT_ONCE, Pixels, Source, check_memory, check_size, pixels};
 
 #[derive(Debug)]
 pub(super) struct TiffPicture {
@@ -33,7 +34,7 @@ const WHITE_POINT: Tag = Tag::Unknown(318);
 const PRIMARIES: Tag = Tag::Unknown(319);
 
 impl TiffPicture {
-    pub(super) fn open(path: &Path) -> Result<(Self, Facts), PictureError> {
+    pub(super) fn open(path: &Path) -> Result<(Box<dyn Source>, Facts), PictureError> {
         let at_once = usize::try_from(MAX_AT_ONCE).unwrap_or(usize::MAX);
         let mut limits = Limits::default();
         limits.decoding_buffer_size = at_once;
@@ -72,38 +73,19 @@ impl TiffPicture {
             windows: None,
             block_rows: chunk[1].min(size[1]),
         };
-        Ok((Self { decoder, size, chunk, channels, planes }, facts))
-    }
-
-    pub(super) fn read(&mut self, rows: Range<usize>) -> Result<Pixels, PictureError> {
-        let mut samples = vec![0.0; rows.len() * self.size[0] * self.channels];
-        let across = match self.decoder.get_chunk_type() {
-            ChunkType::Strip => 1,
-            ChunkType::Tile => self.size[0].div_ceil(self.chunk[0]),
-        };
-        let down = self.size[1].div_ceil(self.chunk[1]);
-        for y in rows.start / self.chunk[1]..rows.end.div_ceil(self.chunk[1]) {
-            for place in 0..across * self.planes {
-                let (x, plane) = (place % across, place / across);
-                let index = u32::try_from((plane * down + y) * across + x);
-                let index = index.map_err(|_| kind(format!("{} planes", self.planes)))?;
-                let chunk = self.decoder.read_chunk(index)?;
-                self.copy(&fractions(chunk)?, [x, y], plane, &rows, &mut samples)?;
-            }
-        }
-        Ok(pixels(&samples, self.channels))
+        Ok((Box::new(Self { decoder, size, chunk, channels, planes }), facts))
     }
 
     /// Copies a strip or tile of one plane to where its samples belong.
     fn copy(
         &self,
         chunk: &[f32],
-        place: [usize; 2],
+        at: [usize; 2],
         plane: usize,
         rows: &Range<usize>,
         samples: &mut [f32],
     ) -> Result<(), PictureError> {
-        let [left, top] = [0, 1].map(|k| place[k] * self.chunk[k]);
+        let [left, top] = [0, 1].map(|k| at[k] * self.chunk[k]);
         let columns = self.chunk[0].min(self.size[0] - left);
         let together = self.channels / self.planes;
         let last = (top + self.chunk[1]).min(rows.end);
@@ -120,6 +102,27 @@ impl TiffPicture {
             }
         }
         Ok(())
+    }
+}
+
+impl Source for TiffPicture {
+    fn read(&mut self, rows: Range<usize>) -> Result<Pixels, PictureError> {
+        let mut samples = vec![0.0; rows.len() * self.size[0] * self.channels];
+        let across = match self.decoder.get_chunk_type() {
+            ChunkType::Strip => 1,
+            ChunkType::Tile => self.size[0].div_ceil(self.chunk[0]),
+        };
+        let down = self.size[1].div_ceil(self.chunk[1]);
+        for y in rows.start / self.chunk[1]..rows.end.div_ceil(self.chunk[1]) {
+            for chunk in 0..across * self.planes {
+                let (x, plane) = (chunk % across, chunk / across);
+                let index = u32::try_from((plane * down + y) * across + x);
+                let index = index.map_err(|_| kind(format!("{} planes", self.planes)))?;
+                let chunk = self.decoder.read_chunk(index)?;
+                self.copy(&fractions(chunk)?, [x, y], plane, &rows, &mut samples)?;
+            }
+        }
+        Ok(pixels(&samples, self.channels))
     }
 }
 

@@ -5,12 +5,17 @@
 //! `fichet`: radiance `S0.` to `S3.`, reflectance `T.`, re-radiation `T.` with two wavelengths, a
 //! comma as the decimal mark, because a point separates layers.
 
+use std::cmp::Ordering;
 use std::fmt;
 use std::str::FromStr;
 
+use upglow_color::Choice as _;
+
+use crate::exr::attribute::Attributes;
+
 /// What a spectral channel holds. Wavelengths are nm, whatever unit the name was written in.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum SpectralChannel {
+pub(crate) enum SpectralChannel {
     /// Radiance or its like: `S0.` and, for polarized light, `S1.` to `S3.`.
     Radiance {
         /// Number of the Stokes component, 0..=3.
@@ -33,60 +38,27 @@ pub enum SpectralChannel {
     },
 }
 
-/// Why a channel's name is not one of the layout.
+/// Why a channel's name is not one of the layout, as what the channel has.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum SpectralNameError {
+pub(crate) enum SpectralNameError {
     /// The name does not begin as a spectral channel does: an ordinary channel, not a fault.
-    #[error("channel {found:?} is not spectral, expected S0. to S3. or T.")]
-    NotSpectral {
-        /// The name.
-        found: String,
-    },
+    #[error("no spectral name, expected S0. to S3. or T.")]
+    NotSpectral,
     /// No number where one belongs.
-    #[error("channel {name:?} has no number before {unit:?}, expected one as 550,000000nm")]
-    NoNumber {
-        /// The name.
-        name: String,
-        /// What stands where the number should.
-        unit: String,
-    },
+    #[error("no number before {unit:?}, expected one as 550,000000nm")]
+    NoNumber { unit: String },
     /// A point inside a number, or another part that is not a wavelength.
-    #[error("channel {name:?} has a decimal point, expected a comma as in 550,000000nm")]
-    DecimalPoint {
-        /// The name.
-        name: String,
-    },
+    #[error("a decimal point, expected a comma as in 550,000000nm")]
+    DecimalPoint,
     /// The number is no wavelength.
-    #[error(
-        "channel {name:?} has the number {number:?}, expected digits with at most one comma, above 0"
-    )]
-    Number {
-        /// The name.
-        name: String,
-        /// The number.
-        number: String,
-    },
+    #[error("the number {number:?}, expected digits with at most one comma, above 0")]
+    Number { number: String },
     /// A unit that is neither meters nor hertz.
-    #[error(
-        "channel {name:?} has the unit {unit:?}, expected m or Hz with an SI prefix, as nm or THz"
-    )]
-    Unit {
-        /// The name.
-        name: String,
-        /// The unit.
-        unit: String,
-    },
+    #[error("the unit {unit:?}, expected m or Hz with an SI prefix, as nm or THz")]
+    Unit { unit: String },
     /// Two wavelengths in a channel of radiance, or more than two.
-    #[error("channel {name:?} has {found} wavelengths, expected {expected}")]
-    Count {
-        /// The name.
-        name: String,
-        /// Wavelengths in it.
-        found: usize,
-        /// How many there may be.
-        expected: &'static str,
-    },
+    #[error("{found} wavelengths, expected {expected}")]
+    Count { found: usize, expected: &'static str },
 }
 
 /// SI prefixes and the powers of ten they stand for; the two-letter one first.
@@ -121,17 +93,31 @@ const NANO: i32 = 9;
 
 impl SpectralChannel {
     /// Whether a name begins as a spectral channel's does, well-formed or not.
-    pub fn is_spectral(name: &str) -> bool {
+    pub(crate) fn is_spectral(name: &str) -> bool {
         split(name).is_some()
     }
 
-    /// The wavelength at which light is measured: the outgoing one of a re-radiation, nm.
-    pub fn outgoing_nm(self) -> f64 {
+    /// Number of the kind (the Stokes component, then reflectance, then re-radiation) and wavelengths,
+    /// nm: 0 where there is no second one.
+    pub(crate) fn key(self) -> (u8, [f64; 2]) {
         match self {
-            Self::Radiance { nm, .. } | Self::Reflectance { nm } => nm,
-            Self::Reradiation { out_nm, .. } => out_nm,
+            Self::Radiance { stokes, nm } => (stokes, [nm, 0.0]),
+            Self::Reflectance { nm } => (4, [nm, 0.0]),
+            Self::Reradiation { in_nm, out_nm } => (5, [in_nm, out_nm]),
         }
     }
+}
+
+/// The order of two [`SpectralChannel::key`]s.
+pub(crate) fn key_order(a: (u8, [f64; 2]), b: (u8, [f64; 2])) -> Ordering {
+    let waves = |k: usize| a.1[k].total_cmp(&b.1[k]);
+    a.0.cmp(&b.0).then(waves(0)).then(waves(1))
+}
+
+/// Numbers of the incident and the outgoing band of each pair with a channel of its own: the
+/// outgoing wavelength is the longer one.
+pub(crate) fn rising_pairs(bands: usize) -> impl Iterator<Item = [usize; 2]> {
+    (0..bands).flat_map(move |incident| (incident + 1..bands).map(move |o| [incident, o]))
 }
 
 /// The kind, `S0` to `S3` or `T`, and what follows its point.
@@ -145,16 +131,15 @@ impl FromStr for SpectralChannel {
 
     fn from_str(name: &str) -> Result<Self, Self::Err> {
         let Some((kind, rest)) = split(name) else {
-            return Err(SpectralNameError::NotSpectral { found: name.into() });
+            return Err(SpectralNameError::NotSpectral);
         };
         let parts: Vec<&str> = rest.split('.').collect();
         // A part of digits alone is the whole part of a number with a point.
         let digits = |part: &str| !part.is_empty() && part.bytes().all(|b| b.is_ascii_digit());
         if parts.len() > 1 && parts[..parts.len() - 1].iter().any(|part| digits(part)) {
-            return Err(SpectralNameError::DecimalPoint { name: name.into() });
+            return Err(SpectralNameError::DecimalPoint);
         }
-        let waves = parts.iter().map(|part| wavelength_nm(name, part));
-        let waves = waves.collect::<Result<Vec<_>, _>>()?;
+        let waves = parts.iter().map(|part| wavelength_nm(part)).collect::<Result<Vec<_>, _>>()?;
         let stokes = kind.as_bytes().get(1).map(|digit| digit - b'0');
         match (stokes, &waves[..]) {
             (Some(stokes), &[nm]) => Ok(Self::Radiance { stokes, nm }),
@@ -163,18 +148,18 @@ impl FromStr for SpectralChannel {
             (stokes, _) => {
                 let expected = if stokes.is_some() { "1" } else { "1 or 2" };
                 let found = waves.len();
-                Err(SpectralNameError::Count { name: name.into(), found, expected })
+                Err(SpectralNameError::Count { found, expected })
             }
         }
     }
 }
 
 /// One wavelength or frequency, as `550,000000nm` or `545THz`, in nm.
-fn wavelength_nm(name: &str, text: &str) -> Result<f64, SpectralNameError> {
+fn wavelength_nm(text: &str) -> Result<f64, SpectralNameError> {
     let end = text.find(|c: char| !(c.is_ascii_digit() || c == ',')).unwrap_or(text.len());
     let (number, unit) = number_and_unit(text, end);
     if number.is_empty() {
-        return Err(SpectralNameError::NoNumber { name: name.into(), unit: unit.into() });
+        return Err(SpectralNameError::NoNumber { unit: unit.into() });
     }
     let power = |base: &str| {
         let prefix = unit.strip_suffix(base)?;
@@ -186,10 +171,10 @@ fn wavelength_nm(name: &str, text: &str) -> Result<f64, SpectralNameError> {
     let nm = match (power("Hz"), power("m")) {
         (Some(power), _) => parse(number, power).map(|hz| LIGHT_M_PER_S / hz * 1e9),
         (None, Some(power)) => parse(number, power + NANO),
-        _ => return Err(SpectralNameError::Unit { name: name.into(), unit: unit.into() }),
+        _ => return Err(SpectralNameError::Unit { unit: unit.into() }),
     };
     nm.filter(|nm| nm.is_finite() && *nm > 0.0)
-        .ok_or_else(|| SpectralNameError::Number { name: name.into(), number: number.into() })
+        .ok_or_else(|| SpectralNameError::Number { number: number.into() })
 }
 
 /// Splits at the unit; an exponent, as in `5,5e2nm`, belongs to the number.
@@ -230,35 +215,37 @@ impl fmt::Display for SpectralChannel {
 }
 
 /// The attribute that says which version of the layout a file follows.
-pub const LAYOUT_VERSION: &str = "spectralLayoutVersion";
+pub(crate) const LAYOUT_VERSION: &str = "spectralLayoutVersion";
 /// The version that this program reads and writes.
-pub const LAYOUT_VERSION_VALUE: &str = "1.0";
+pub(crate) const LAYOUT_VERSION_VALUE: &str = "1.0";
 /// The attribute that says the unit of `S0.` channels.
-pub const EMISSIVE_UNITS: &str = "emissiveUnits";
+pub(crate) const EMISSIVE_UNITS: &str = "emissiveUnits";
 /// Our attribute that says what re-radiation channels hold: the layout itself does not.
-pub const BISPECTRAL_UNIT: &str = "upglow.bispectralUnit";
+pub(crate) const BISPECTRAL_UNIT: &str = "upglow.bispectralUnit";
 
 /// What a re-radiation channel holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum BispectralUnit {
     /// Share of the incident power that leaves within the band of the outgoing wavelength.
+    #[cfg_attr(feature = "serde", serde(rename = "per band"))]
     PerBand,
     /// Share of the incident power that leaves per nanometer at the outgoing wavelength.
+    #[cfg_attr(feature = "serde", serde(rename = "per nm"))]
     PerNm,
 }
 
-impl BispectralUnit {
-    /// The value of [`BISPECTRAL_UNIT`] in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::PerBand => "per band",
-            Self::PerNm => "per nm",
-        }
-    }
+upglow_color::choices!(
+    BispectralUnit,
+    "unit of re-radiation",
+    PerBand = "per band",
+    PerNm = "per nm",
+);
 
-    /// The unit of this name, if it is one.
-    pub fn named(name: &str) -> Option<Self> {
-        [Self::PerBand, Self::PerNm].into_iter().find(|unit| unit.name() == name)
+impl BispectralUnit {
+    /// The unit that a file states, if it states one.
+    pub(crate) fn stated(attributes: &Attributes) -> Option<Self> {
+        Self::named(attributes.get(BISPECTRAL_UNIT)?.as_text()?).ok()
     }
 }
 
@@ -323,7 +310,9 @@ mod tests {
         #[test]
         fn no_name_panics(name in "(S0|T|S3)?\\.?[0-9,.eE+nmHzTkd-]{0,20}") {
             if let Ok(channel) = read(&name) {
-                prop_assert!(channel.outgoing_nm() > 0.0);
+                let (_, [first, second]) = channel.key();
+                let is_pair = matches!(channel, SpectralChannel::Reradiation { .. });
+                prop_assert!(first > 0.0 && (second > 0.0 || !is_pair));
             }
         }
 

@@ -1,10 +1,11 @@
 //! What a linter finds in the samples of a spectral file.
 
+use super::channels::{ListedChannel, band, bands_nm};
+use super::findings::{Lint, Rule};
 use crate::exr::error::ExrError;
 use crate::exr::header::Sample;
 use crate::exr::reader::ExrReader;
-use crate::spectral::channel::{BISPECTRAL_UNIT, BispectralUnit, SpectralChannel};
-use crate::spectral::lint::{Found, Lint, Rule, band, bands_nm};
+use crate::spectral::channel::{BispectralUnit, SpectralChannel};
 
 /// Rounding to half precision: 2⁻¹² of each sample; twice that where samples are added up.
 const HALF_SLACK: f64 = 5e-4;
@@ -13,7 +14,7 @@ const FLOAT_SLACK: f64 = 1e-5;
 
 /// How often something is wrong, and where first.
 #[derive(Clone, Debug, Default)]
-struct Tally {
+struct Occurrences {
     count: u64,
     /// Column, row, channel, value.
     first: Option<(usize, usize, String, f64)>,
@@ -21,7 +22,7 @@ struct Tally {
     most: f64,
 }
 
-impl Tally {
+impl Occurrences {
     fn add(&mut self, x: usize, y: usize, name: &str, value: f64) {
         self.count += 1;
         self.most = self.most.max(value);
@@ -36,40 +37,40 @@ impl Tally {
     }
 }
 
-pub(crate) fn check_pixels(
+pub(super) fn check_samples(
     reader: &mut ExrReader,
-    channels: &[Found],
+    channels: &[ListedChannel],
     lint: &mut Lint,
 ) -> Result<(), ExrError> {
     let [_, height] = reader.size();
-    let sums = Sums::new(reader, channels);
-    let [mut broken, mut negative, mut bright] = std::array::from_fn(|_| Tally::default());
+    let sums = EnergySums::new(reader, channels);
+    let [mut broken, mut negative, mut bright] = std::array::from_fn(|_| Occurrences::default());
     let numbers: Vec<usize> = channels.iter().map(|found| found.number).collect();
     for top in (0..height).step_by(reader.block_rows()) {
         let rows = top..height.min(top + reader.block_rows());
         let planes = reader.read_rows(rows, &numbers)?;
-        check_samples(reader.size()[0], top, channels, &planes, [&mut broken, &mut negative]);
+        check_signs(reader.size()[0], top, channels, &planes, [&mut broken, &mut negative]);
         sums.check(reader.size()[0], top, &planes, &mut bright);
     }
     if let Some(found) = broken.report("samples that are no finite numbers") {
-        lint.error(Rule::Finite, found, "finite numbers");
+        lint.add(Rule::Finite, found, "finite numbers");
     }
     if let Some(found) = negative.report("negative samples") {
-        lint.error(Rule::Negative, found, "0 or more");
+        lint.add(Rule::Negative, found, "0 or more");
     }
     if let Some(found) = bright.report("sums of outgoing light above 1") {
         let found = format!("{found}, the largest {}", bright.most);
-        lint.error(Rule::Energy, found, "at most 1 for each incident wavelength");
+        lint.add(Rule::Energy, found, "at most 1 for each incident wavelength");
     }
     Ok(())
 }
 
-fn check_samples(
+fn check_signs(
     width: usize,
     top: usize,
-    channels: &[Found],
+    channels: &[ListedChannel],
     planes: &[Vec<f32>],
-    [broken, negative]: [&mut Tally; 2],
+    [broken, negative]: [&mut Occurrences; 2],
 ) {
     for (found, plane) in channels.iter().zip(planes) {
         let signed = matches!(found.channel, SpectralChannel::Radiance { stokes: 1.., .. });
@@ -85,17 +86,16 @@ fn check_samples(
 }
 
 /// For each incident band the planes whose sum is the outgoing light, and the weight of each.
-struct Sums {
+struct EnergySums {
     name: Vec<String>,
     terms: Vec<Vec<(usize, f64)>>,
     most: f64,
 }
 
-impl Sums {
-    fn new(reader: &ExrReader, channels: &[Found]) -> Self {
+impl EnergySums {
+    fn new(reader: &ExrReader, channels: &[ListedChannel]) -> Self {
         let bands = bands_nm(channels);
-        let stated = reader.attributes().get(BISPECTRAL_UNIT).and_then(|v| v.as_text());
-        let unit = stated.and_then(BispectralUnit::named);
+        let unit = BispectralUnit::stated(reader.attributes());
         let mut terms = vec![Vec::new(); bands.len()];
         for (plane, found) in channels.iter().enumerate() {
             let (incident, weight) = match (found.channel, unit) {
@@ -120,7 +120,7 @@ impl Sums {
         Self { name: name.collect(), terms, most }
     }
 
-    fn check(&self, width: usize, top: usize, planes: &[Vec<f32>], bright: &mut Tally) {
+    fn check(&self, width: usize, top: usize, planes: &[Vec<f32>], bright: &mut Occurrences) {
         for (name, terms) in self.name.iter().zip(&self.terms) {
             let pixels = terms.first().map_or(0, |(plane, _)| planes[*plane].len());
             for i in 0..pixels {

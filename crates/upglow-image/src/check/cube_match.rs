@@ -1,12 +1,14 @@
-//! A cube's opinion of a picture: how well its materials show each texel.
+//! How well a cube's materials show a picture.
 
 use upglow::ColorTable;
 use upglow_color::{Colorimetry, LinearRgb, Xyz, ciede2000};
 
-/// How well a cube's blend shows the texels in 0..=1.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// How well a cube's mixtures show the texels in 0..=1.
+#[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct CubeOpinion {
+pub struct CubeMatch {
+    /// The cube's file, as people know it.
+    pub file: String,
     /// Texels that the cube was asked for: those with all values in 0..=1.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub texels: u64,
@@ -15,16 +17,14 @@ pub struct CubeOpinion {
     /// Share of them shown within 2 ΔE00.
     pub within_two: f64,
     /// Mean ΔE00.
-    #[cfg_attr(feature = "serde", serde(rename = "mean_de2000"))]
-    pub mean: f64,
+    pub mean_de2000: f64,
     /// Greatest ΔE00.
-    #[cfg_attr(feature = "serde", serde(rename = "greatest_de2000"))]
-    pub greatest: f64,
+    pub greatest_de2000: f64,
 }
 
-/// Sums that parts of a picture add up to, in whole numbers: their order does not matter.
+/// Differences of parts of a picture, summed in whole numbers: their order does not matter.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct OpinionTally {
+pub(super) struct DifferenceSums {
     texels: u64,
     within_one: u64,
     within_two: u64,
@@ -35,8 +35,8 @@ pub(super) struct OpinionTally {
 /// ΔE00 of a texel is summed in multiples of this: finer than the single precision of the cube.
 const UNIT: f64 = 1.0 / 16_777_216.0;
 
-impl OpinionTally {
-    pub(super) fn add(&mut self, other: &Self) {
+impl DifferenceSums {
+    pub(super) fn join(&mut self, other: &Self) {
         self.texels += other.texels;
         self.within_one += other.within_one;
         self.within_two += other.within_two;
@@ -54,12 +54,12 @@ impl OpinionTally {
                 let asked = colorimetry.xyz_from_rgb(LinearRgb(asked.map(f64::from)));
                 let [asked, shown] = [asked, Xyz(shown.map(f64::from))];
                 let [asked, shown] = [asked, shown].map(|xyz| colorimetry.lab_from_xyz(xyz));
-                self.note(ciede2000(asked, shown));
+                self.add(ciede2000(asked, shown));
             }
         }
     }
 
-    fn note(&mut self, de2000: f64) {
+    fn add(&mut self, de2000: f64) {
         self.texels += 1;
         self.within_one += u64::from(de2000 <= 1.0);
         self.within_two += u64::from(de2000 <= 2.0);
@@ -67,14 +67,15 @@ impl OpinionTally {
         self.greatest = self.greatest.max(de2000);
     }
 
-    pub(super) fn finish(&self) -> CubeOpinion {
+    pub(super) fn finish(&self, file: &str) -> CubeMatch {
         let texels = self.texels.max(1) as f64;
-        CubeOpinion {
+        CubeMatch {
+            file: file.into(),
             texels: self.texels,
             within_one: self.within_one as f64 / texels,
             within_two: self.within_two as f64 / texels,
-            mean: self.sum as f64 * UNIT / texels,
-            greatest: self.greatest,
+            mean_de2000: self.sum as f64 * UNIT / texels,
+            greatest_de2000: self.greatest,
         }
     }
 }

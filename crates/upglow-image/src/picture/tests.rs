@@ -1,13 +1,15 @@
 //! TIFF and PNG pictures read as they were written.
 
-#![expect(clippy::unwrap_used, reason = "a test fails where its files cannot be made")]
-
 use std::fs::File;
 use std::path::Path;
 
 use tiff::encoder::{TiffEncoder, colortype};
 use tiff::tags::Tag;
-use upglow_image::{Alpha, Band, Encoding, Picture};
+
+use super::Picture;
+use super::band::Band;
+use super::encoding::Encoding;
+use super::source::Alpha;
 
 /// Bytes of all sizes, in a mixed order.
 fn byte(i: u32) -> u8 {

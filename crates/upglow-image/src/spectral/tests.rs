@@ -1,19 +1,25 @@
 //! Spectral files: written, linted, read texel by texel, and checked by other programs.
 
-#![expect(clippy::unwrap_used, reason = "a test fails where its files cannot be made")]
-
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use upglow::{Cube, DyeModel, DyeOptions, DyeSet, Fluorescence, Material, Mixture, Model, Sigmoid};
 use upglow_color::{Contract, Grid, Illuminant, RgbSpace};
 use upglow_fit::{FitOptions, Unwatched, build_cube};
-use upglow_image::{
-    Assumed, Attributes, BISPECTRAL_UNIT, BakeOptions, Baker, BispectralUnit, CompactForm,
-    CompactLayout, Depth, EMISSIVE_UNITS, ExrDescription, ExrReader, ExrWriter, Form,
-    LAYOUT_VERSION, LAYOUT_VERSION_VALUE, MaterialWay, Rule, Sample, Severity, SpectralChannel,
-    SpectralPicture, chromaticities, lint,
+
+use super::channel::{
+    BISPECTRAL_UNIT, BispectralUnit, EMISSIVE_UNITS, LAYOUT_VERSION, LAYOUT_VERSION_VALUE,
+    SpectralChannel, rising_pairs,
 };
+use super::compact::{CompactForm, CompactLayout};
+use super::lint::findings::{Lint, Rule, Severity};
+use super::picture::SpectralPicture;
+use crate::bake::{BakeOptions, Baker, Form};
+use crate::exr::attribute::{Attributes, chromaticities};
+use crate::exr::header::Sample;
+use crate::exr::reader::ExrReader;
+use crate::exr::writer::{ExrDescription, ExrWriter};
+use crate::picture::linear::Assumed;
 
 const SIZE: [usize; 2] = [3, 2];
 
@@ -33,7 +39,7 @@ fn write(path: &Path, names: &[String], attributes: Attributes, texels: &[Vec<f3
 fn layout_attributes() -> Attributes {
     Attributes::from([
         (LAYOUT_VERSION.into(), LAYOUT_VERSION_VALUE.into()),
-        (BISPECTRAL_UNIT.into(), BispectralUnit::PerBand.name().into()),
+        (BISPECTRAL_UNIT.into(), BispectralUnit::PerBand.to_string().into()),
     ])
 }
 
@@ -68,8 +74,8 @@ fn full_and_compact(folder: &Path, bands: Grid) -> [PathBuf; 2] {
     let texel = |i: usize| {
         let compact = layout.encode(&Mixture::of(&model, material(i))).unwrap();
         let matrix = layout.expand(&compact).unwrap();
-        let diagonal = (0..bands.len()).map(|b| matrix.shares[b][b]).collect::<Vec<_>>();
-        let pairs = matrix.pairs().map(|(.., share)| share).collect::<Vec<_>>();
+        let diagonal = (0..bands.len()).map(|b| matrix[b][b]).collect::<Vec<_>>();
+        let pairs = rising_pairs(bands.len()).map(|[i, o]| matrix[o][i]).collect::<Vec<_>>();
         let full = [&preview[..], &diagonal, &pairs].concat();
         [full, [&preview[..], &compact].concat()]
     };
@@ -91,7 +97,7 @@ fn a_compact_file_reads_as_the_full_one() {
     let bands = Grid::try_new(380, 780, 10).unwrap();
     let paths = full_and_compact(folder.path(), bands);
     for path in &paths {
-        let found = lint(path, Depth::Pixels).unwrap();
+        let found = Lint::of_file(path).unwrap();
         assert_eq!(found.findings, [], "{}", path.display());
         assert!(found.is_well_formed());
     }
@@ -105,7 +111,7 @@ fn a_compact_file_reads_as_the_full_one() {
         }
     }
     let texel = full.at(2, 1).unwrap();
-    assert!(texel.reradiation.iter().any(|r| r.value > 0.01));
+    assert!(texel.reradiation.iter().any(|(.., share)| *share > 0.01));
     assert!(texel.reflectance.is_sorted_by(|a, b| a.0 < b.0));
     assert_eq!(texel.preview, Some([0.25, 0.5, 0.75]));
     let outside = full.at(3, 0).unwrap_err().to_string();
@@ -118,7 +124,7 @@ fn findings(names: &[&str], attributes: Attributes, value: f32) -> Vec<(Rule, Se
     let path = folder.path().join("x.exr");
     let names: Vec<String> = names.iter().map(|&n| n.into()).collect();
     write(&path, &names, attributes, &vec![vec![value; names.len()]; 6]);
-    let found = lint(&path, Depth::Pixels).unwrap();
+    let found = Lint::of_file(&path).unwrap();
     found.findings.into_iter().map(|f| (f.rule, f.severity, f.to_string())).collect()
 }
 
@@ -164,7 +170,7 @@ fn attributes_are_linted_too() {
         ]
     );
     let mut attributes = layout_attributes();
-    attributes.insert(BISPECTRAL_UNIT.into(), BispectralUnit::PerNm.name().into());
+    attributes.insert(BISPECTRAL_UNIT.into(), BispectralUnit::PerNm.to_string().into());
     let bright = findings(&names, attributes, 0.6);
     assert!(bright.iter().any(|(rule, ..)| *rule == Rule::Energy), "{bright:?}");
     let mut attributes = layout_attributes();
@@ -209,9 +215,9 @@ fn other_programs_read_our_files() {
                 let name = SpectralChannel::Reflectance { nm };
                 expected += &format!("{x} {y} {name} {value}\n");
             }
-            for r in texel.reradiation {
-                let name = SpectralChannel::Reradiation { in_nm: r.in_nm, out_nm: r.out_nm };
-                expected += &format!("{x} {y} {name} {}\n", r.value);
+            for (in_nm, out_nm, share) in texel.reradiation {
+                let name = SpectralChannel::Reradiation { in_nm, out_nm };
+                expected += &format!("{x} {y} {name} {share}\n");
             }
         }
     }
@@ -273,7 +279,7 @@ fn other_programs_read_baked_materials_and_light() {
     };
     let folder = tempfile::tempdir().unwrap();
     let light = Illuminant::named("A").unwrap();
-    let forms = [Form::Material(MaterialWay::Polished), Form::Radiance { light }];
+    let forms = [Form::Material, Form::Radiance { light }];
     for (form, channels) in forms.into_iter().zip([6, 3]) {
         let (path, _) = baked(folder.path(), "baked.exr", form, &Model::Dyes(model()));
         let list = folder.path().join("expected.txt");

@@ -1,0 +1,236 @@
+//! What a check finds, as reports and pages say it.
+
+use std::fmt;
+
+use upglow_color::{Standing, StandingKind};
+
+use super::cube_match::CubeMatch;
+use super::raster::Raster;
+
+/// What a picture asks of materials.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct CheckReport {
+    /// The picture's file, as people know it.
+    pub file: String,
+    /// Texels in a row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// The RGB space that the picture was checked in: its own, or the cube's.
+    pub rgb_space: String,
+    /// The light that it is seen under.
+    pub illuminant: String,
+    /// How many texels need what, and how many have values that no cube holds.
+    #[cfg_attr(feature = "serde", serde(flatten))]
+    pub counts: Counts,
+    /// The first texels of each flaw, in reading order.
+    pub flaws: Vec<FlawedTexel>,
+    /// The texels furthest beyond any material, then furthest beyond reflectance; at most
+    /// [`Checker::WORST`](crate::Checker::WORST), no two of nearly the same color.
+    pub worst: Vec<WorstTexel>,
+    /// How well a cube's materials show the picture, if there is a cube.
+    pub cube: Option<CubeMatch>,
+    /// Where the picture needs what.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub(super) heat: Raster,
+    /// The picture as sRGB shows it.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub(super) thumbnail: Raster,
+}
+
+impl CheckReport {
+    /// The heat map of what the picture needs, as a PNG file.
+    #[must_use]
+    pub fn heat_map_png(&self) -> Vec<u8> {
+        self.heat.to_png()
+    }
+}
+
+/// How many texels are what.
+///
+/// The first three and those with a value that is not a number or infinite add up to all texels. The
+/// last four count texels with such a value in any channel: one texel may count in more than one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Texels.
+    pub texels: u64,
+    /// Some reflectance shows them.
+    pub reflectance: u64,
+    /// No reflectance, but some fluorescent material shows them.
+    pub needs_fluorescence: u64,
+    /// No material shows them.
+    pub unreachable: u64,
+    /// No colors: a value is not a number or infinite.
+    pub no_color: u64,
+    /// Texels with each flaw, in the order of [`Flaw::ALL`].
+    flawed: [u64; Flaw::ALL.len()],
+}
+
+impl Counts {
+    /// Texels with this flaw.
+    pub fn of(&self, flaw: Flaw) -> u64 {
+        self.flawed[flaw as usize]
+    }
+
+    /// Whether every value is in 0..=1.
+    pub fn all_in_range(&self) -> bool {
+        self.flawed == [0; Flaw::ALL.len()]
+    }
+
+    /// These texels as a share of all.
+    pub fn share(&self, part: u64) -> f64 {
+        part as f64 / self.texels as f64
+    }
+
+    /// Counts a texel with this flaw.
+    pub(super) fn add_flaw(&mut self, flaw: Flaw) {
+        self.flawed[flaw as usize] += 1;
+    }
+
+    /// Counts a texel by what it takes to show it; `None` for one that is not a color.
+    pub(super) fn add(&mut self, kind: Option<StandingKind>) {
+        self.texels += 1;
+        *match kind {
+            Some(StandingKind::Reflectance) => &mut self.reflectance,
+            Some(StandingKind::NeedsFluorescence) => &mut self.needs_fluorescence,
+            Some(StandingKind::Unreachable) => &mut self.unreachable,
+            None => &mut self.no_color,
+        } += 1;
+    }
+
+    pub(super) fn join(&mut self, other: &Self) {
+        self.texels += other.texels;
+        self.reflectance += other.reflectance;
+        self.needs_fluorescence += other.needs_fluorescence;
+        self.unreachable += other.unreachable;
+        self.no_color += other.no_color;
+        self.flawed.iter_mut().zip(other.flawed).for_each(|(all, part)| *all += part);
+    }
+}
+
+/// Kinds of materials as shares of all texels, then counts.
+#[cfg(feature = "serde")]
+impl serde::Serialize for Counts {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        use serde::ser::SerializeStruct as _;
+        let mut fields = serializer.serialize_struct("Counts", 9)?;
+        fields.serialize_field("texels", &self.texels)?;
+        fields.serialize_field("shown_by_reflectance", &self.share(self.reflectance))?;
+        fields.serialize_field("needs_fluorescence", &self.share(self.needs_fluorescence))?;
+        fields.serialize_field("shown_by_nothing", &self.share(self.unreachable))?;
+        fields.serialize_field("no_color", &self.no_color)?;
+        fields.serialize_field("above_one", &self.of(Flaw::AboveOne))?;
+        fields.serialize_field("negative", &self.of(Flaw::Negative))?;
+        fields.serialize_field("not_a_number", &self.of(Flaw::NotANumber))?;
+        fields.serialize_field("infinite", &self.of(Flaw::Infinite))?;
+        fields.end()
+    }
+}
+
+/// A value that is no component of a color in a cube.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub enum Flaw {
+    /// Finite and above 1.
+    #[cfg_attr(feature = "serde", serde(rename = "above 1"))]
+    AboveOne,
+    /// Finite and below 0.
+    #[cfg_attr(feature = "serde", serde(rename = "negative"))]
+    Negative,
+    /// Not a number.
+    #[cfg_attr(feature = "serde", serde(rename = "no number"))]
+    NotANumber,
+    /// Infinite, of either sign.
+    #[cfg_attr(feature = "serde", serde(rename = "infinite"))]
+    Infinite,
+}
+
+impl Flaw {
+    /// Every flaw.
+    pub const ALL: [Self; 4] = [Self::AboveOne, Self::Negative, Self::NotANumber, Self::Infinite];
+
+    /// Whether a channel of `rgb` has it.
+    pub fn is_in(self, rgb: [f32; 3]) -> bool {
+        rgb.iter().any(|&v| match self {
+            Self::AboveOne => v > 1.0 && v.is_finite(),
+            Self::Negative => v < 0.0 && v.is_finite(),
+            Self::NotANumber => v.is_nan(),
+            Self::Infinite => v.is_infinite(),
+        })
+    }
+}
+
+impl fmt::Display for Flaw {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::AboveOne => "above 1",
+            Self::Negative => "negative",
+            Self::NotANumber => "not a number",
+            Self::Infinite => "infinite",
+        })
+    }
+}
+
+/// A texel with a flaw.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct FlawedTexel {
+    /// What is wrong with it.
+    pub flaw: Flaw,
+    /// Column, from 0 at the left.
+    pub x: usize,
+    /// Row, from 0 at the top.
+    pub y: usize,
+    /// Its values.
+    pub rgb: [f32; 3],
+}
+
+/// Two are equal if they have the same bits: a value may be not a number.
+impl PartialEq for FlawedTexel {
+    fn eq(&self, other: &Self) -> bool {
+        let bits = |texel: &Self| texel.rgb.map(f32::to_bits);
+        (self.flaw, self.x, self.y, bits(self)) == (other.flaw, other.x, other.y, bits(other))
+    }
+}
+
+/// A texel that a reflectance does not show.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WorstTexel {
+    /// Column, from 0 at the left.
+    pub x: usize,
+    /// Row, from 0 at the top.
+    pub y: usize,
+    /// Its color, linear RGB of the contract's space.
+    pub rgb: [f32; 3],
+    /// What it takes to show it, and how far it is from what materials show.
+    pub standing: Standing,
+    /// The color asked for, the nearest of a reflectance, and the nearest of any material, in sRGB.
+    pub(super) swatches: [[u8; 3]; 3],
+}
+
+impl WorstTexel {
+    /// What it takes to show the color, in words.
+    pub fn needs(&self) -> &'static str {
+        match self.standing.kind {
+            StandingKind::Reflectance => "reflectance",
+            StandingKind::NeedsFluorescence => "fluorescence",
+            StandingKind::Unreachable => "nothing shows it",
+        }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl serde::Serialize for WorstTexel {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        use serde::ser::SerializeStruct as _;
+        let mut fields = serializer.serialize_struct("WorstTexel", 6)?;
+        fields.serialize_field("x", &self.x)?;
+        fields.serialize_field("y", &self.y)?;
+        fields.serialize_field("rgb", &self.rgb)?;
+        fields.serialize_field("needs", self.needs())?;
+        fields.serialize_field("reflectance_de2000", &self.standing.reflectance.de2000)?;
+        fields.serialize_field("material_de2000", &self.standing.fluorescence.de2000)?;
+        fields.end()
+    }
+}
