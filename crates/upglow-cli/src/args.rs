@@ -120,9 +120,6 @@ pub(crate) struct ColorArgs {
     /// Draw the curves of the material to this SVG file
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) plot: Option<PathBuf>,
-    /// Draw the curves as text even if standard output is not a terminal
-    #[arg(long, conflicts_with = "json")]
-    pub(crate) plot_terminal: bool,
 }
 
 #[derive(Clone, Debug, clap::Args)]

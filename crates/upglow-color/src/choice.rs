@@ -49,6 +49,30 @@ fn alternatives(words: impl Iterator<Item = &'static str>) -> String {
     }
 }
 
+/// With the feature `serde` a choice is serialized as its word.
+#[cfg(feature = "serde")]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! serialize_choice {
+    ($choice:ty) => {
+        impl $crate::serde::Serialize for $choice {
+            fn serialize<S: $crate::serde::Serializer>(
+                &self,
+                serializer: S,
+            ) -> Result<S::Ok, S::Error> {
+                serializer.serialize_str($crate::Choice::name(*self))
+            }
+        }
+    };
+}
+
+#[cfg(not(feature = "serde"))]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! serialize_choice {
+    ($choice:ty) => {};
+}
+
 /// Implements [`Choice`], `Display` and `FromStr` for an enum from a table of its values and their
 /// words. Former words follow the present one: `Variant = "word" | "former word"`.
 #[doc(hidden)]
@@ -69,6 +93,8 @@ macro_rules! choices {
                 match self { $(Self::$variant $(($inner))? => &[$($alias),*]),+ }
             }
         }
+
+        $crate::serialize_choice!($choice);
 
         impl ::std::fmt::Display for $choice {
             fn fmt(&self, f: &mut ::std::fmt::Formatter<'_>) -> ::std::fmt::Result {

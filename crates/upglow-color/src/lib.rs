@@ -47,6 +47,10 @@ mod standing;
 mod tables;
 mod values;
 
+#[cfg(feature = "serde")]
+#[doc(hidden)]
+pub use serde;
+
 pub use adaptation::Adaptation;
 pub use choice::{Choice, UnknownChoice};
 pub use ciede2000::{ciede2000, ciede2000_residuals};

@@ -6,7 +6,6 @@ use crate::{Features, Material, Sigmoid};
 
 /// How a color between nodes gets its material.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "lowercase"))]
 pub enum Interpolation {
     /// The four materials at the corners of the color's tetrahedron, mixed by weight. Where the
     /// corners match their colors, so does every point between them.

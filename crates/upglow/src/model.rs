@@ -33,7 +33,6 @@ impl Model {
 
 /// What is conserved when absorbed light is given back.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "lowercase"))]
 pub enum Accounting {
     /// All absorbed energy times the quantum yield comes out, as the seed paper has it.
     #[default]
@@ -56,7 +55,6 @@ impl Accounting {
 
 /// What two dyes in one material do with each other's light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "lowercase"))]
 pub enum Mixing {
     /// One absorption, one emission: what either absorbs comes out as the mixed emission.
     #[default]

@@ -1,7 +1,5 @@
 //! `upglow color`: the material of one color.
 
-use std::io::{IsTerminal, stdout};
-
 use upglow::{Cube, Interpolation, Mixture, ModelOnGrid};
 use upglow_color::{
     Adaptation, ColorSolids, Colorimetry, Contract, Grid, Illuminant, LinearRgb, Metric, Nearest,
@@ -12,7 +10,7 @@ use upglow_terminal::{Console, Failure};
 
 use super::color_report::{ColorReport, LightReport, PartReport, StandingReport};
 use crate::args::ColorArgs;
-use crate::plot::{Curves, Figure, Swatch, svg, terminal};
+use crate::plot::{Curves, Figure, Swatch, svg};
 use crate::{files, plan};
 
 /// The lights that the material is shown under, beside the cube's own.
@@ -37,15 +35,7 @@ pub(crate) fn run(args: &ColorArgs, console: &Console) -> Result<(), Failure> {
     if let Some(path) = &args.plot {
         files::write(path, svg::draw(&shown.figure()).as_bytes())?;
     }
-    let drawing = match stdout().is_terminal() {
-        _ if console.json => None,
-        true => {
-            let colored = std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
-            Some(terminal::draw(&shown.curves, colored))
-        }
-        false => args.plot_terminal.then(|| terminal::draw(&shown.curves, false)),
-    };
-    console.print(&shown.report(args, drawing))
+    console.print(&shown.report(args))
 }
 
 fn no_material(error: impl std::error::Error + Send + Sync + 'static) -> Failure {
@@ -99,7 +89,7 @@ impl<'a> Shown<'a> {
         Metric::De2000.distance(&self.colorimetry, self.target, color)
     }
 
-    fn report(&'a self, args: &ColorArgs, drawing: Option<String>) -> ColorReport<'a> {
+    fn report(&'a self, args: &ColorArgs) -> ColorReport<'a> {
         let Contract { space, illuminant, adaptation, .. } = self.cube.contract();
         ColorReport {
             file: args.file.display().to_string(),
@@ -115,7 +105,6 @@ impl<'a> Shown<'a> {
             lights: self.lights(),
             plot: args.plot.as_ref().map(|path| path.display().to_string()),
             curves: &self.curves,
-            drawing,
         }
     }
 

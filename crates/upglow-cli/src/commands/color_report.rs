@@ -1,7 +1,5 @@
 //! What `upglow color` prints.
 
-use std::fmt::Write as _;
-
 use serde::Serialize;
 use upglow::{Features, Fluorescence, Interpolation, Material, Model, Sigmoid, Vertex};
 use upglow_color::{Adaptation, LinearRgb, Xyz};
@@ -32,9 +30,6 @@ pub(crate) struct ColorReport<'a> {
     pub(crate) lights: Vec<LightReport>,
     pub(crate) plot: Option<String>,
     pub(crate) curves: &'a Curves,
-    /// The curves drawn in text, where they are wanted.
-    #[serde(skip)]
-    pub(crate) drawing: Option<String>,
 }
 
 /// The limits of physics around a color.
@@ -136,14 +131,7 @@ impl StandingReport {
 
 impl Report for ColorReport<'_> {
     fn text(&self) -> String {
-        let mut text = self.head();
-        if let Some(drawing) = &self.drawing {
-            let _ = write!(text, "\n{drawing}");
-        }
-        let _ = write!(text, "\n{}", self.shapes());
-        let _ = write!(text, "\n{}", self.fluorescence());
-        let _ = write!(text, "\n{}", self.colors());
-        text
+        [self.head(), self.shapes(), self.fluorescence(), self.colors()].join("\n")
     }
 }
 

@@ -1,7 +1,6 @@
 //! Pictures of a material's curves.
 
 pub(crate) mod svg;
-pub(crate) mod terminal;
 
 use upglow::{Bispectral, Material, Mixture, Model, Sigmoid};
 use upglow_color::{Colorimetry, Grid, LinearRgb, srgb_encoded};
