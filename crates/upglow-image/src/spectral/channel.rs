@@ -225,13 +225,10 @@ pub(crate) const BISPECTRAL_UNIT: &str = "upglow.bispectralUnit";
 
 /// What a re-radiation channel holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum BispectralUnit {
     /// Share of the incident power that leaves within the band of the outgoing wavelength.
-    #[cfg_attr(feature = "serde", serde(rename = "per band"))]
     PerBand,
     /// Share of the incident power that leaves per nanometer at the outgoing wavelength.
-    #[cfg_attr(feature = "serde", serde(rename = "per nm"))]
     PerNm,
 }
 
