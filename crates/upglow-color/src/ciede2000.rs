@@ -1,7 +1,8 @@
 //! The CIEDE2000 color difference, as one number and as three residuals with derivatives.
 
 use crate::jet::Jet;
-use crate::{Lab, Matrix3};
+use crate::lab::Lab;
+use crate::matrix::Matrix3;
 
 /// CIEDE2000 of two colors with unit weights; symmetric.
 ///

@@ -132,7 +132,7 @@ impl ColorSolid {
     fn search(&self, color: Xyz, goal: Goal) -> Option<[f64; 3]> {
         let relative = |p: Xyz| (p - color).0;
         let mut nearest = relative(self.support([1.0; 3]));
-        let mut simplex = Corners::from_iter([nearest]);
+        let mut simplex = Simplex::from_iter([nearest]);
         for _ in 0..STEP_LIMIT {
             let square = dot(nearest, nearest);
             if square <= ON_THE_SURFACE * ON_THE_SURFACE {
@@ -166,14 +166,14 @@ enum Goal {
 /// more lies in a face of fewer.
 const FACE: usize = 4;
 
-/// The corners of a face and one more; kept in place, for a search tries dozens of faces.
+/// The corners of a simplex or of a face, kept in place: a search tries dozens of faces.
 #[derive(Clone, Copy, Debug)]
-struct Corners {
+struct Simplex {
     points: [[f64; 3]; FACE + 1],
     count: usize,
 }
 
-impl Corners {
+impl Simplex {
     fn push(&mut self, point: [f64; 3]) {
         self.points[self.count] = point;
         self.count += 1;
@@ -190,7 +190,7 @@ impl Corners {
     }
 }
 
-impl FromIterator<[f64; 3]> for Corners {
+impl FromIterator<[f64; 3]> for Simplex {
     fn from_iter<I: IntoIterator<Item = [f64; 3]>>(points: I) -> Self {
         let mut corners = Self { points: [[0.0; 3]; FACE + 1], count: 0 };
         points.into_iter().for_each(|point| corners.push(point));
@@ -200,7 +200,7 @@ impl FromIterator<[f64; 3]> for Corners {
 
 /// The point nearest to the origin of the convex hull of some points, and the corners of the face
 /// it lies in.
-fn nearest_of_simplex(corners: &Corners) -> ([f64; 3], Corners) {
+fn nearest_of_simplex(corners: &Simplex) -> ([f64; 3], Simplex) {
     let masks = (1..1_u32 << corners.count).filter(|mask| mask.count_ones() as usize <= FACE);
     let (point, mask) = masks
         .filter_map(|mask| Some((nearest_of_plane(corners.face(mask).points())?, mask)))
@@ -212,7 +212,7 @@ fn nearest_of_simplex(corners: &Corners) -> ([f64; 3], Corners) {
 /// The point nearest to the origin of the plane through a face; `None` if it is outside the face
 /// or the face is degenerate.
 fn nearest_of_plane(face: &[[f64; 3]]) -> Option<[f64; 3]> {
-    let edges: Corners = face[1..].iter().map(|p| sub(*p, face[0])).collect();
+    let edges: Simplex = face[1..].iter().map(|p| sub(*p, face[0])).collect();
     let edges = edges.points();
     let weights = solve_gram(edges, face[0])?;
     let weights = &weights[..edges.len()];
@@ -262,7 +262,9 @@ fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Contract, Grid, LinearRgb};
+    use crate::contract::Contract;
+    use crate::grid::Grid;
+    use crate::values::LinearRgb;
     use proptest::prelude::*;
 
     fn solids() -> (Colorimetry, ColorSolid, ColorSolid) {

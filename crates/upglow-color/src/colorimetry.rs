@@ -1,8 +1,12 @@
 //! A contract on a wavelength grid: the numbers that every later sum needs.
 
-use crate::{
-    Contract, ContractError, Grid, Illuminant, Lab, LinearRgb, Matrix3, Observer, Xyz, lab_from_xyz,
-};
+use crate::contract::{Contract, ContractError};
+use crate::grid::Grid;
+use crate::illuminant::Illuminant;
+use crate::lab::{Lab, lab_from_xyz};
+use crate::matrix::Matrix3;
+use crate::observer::Observer;
+use crate::values::{LinearRgb, Xyz};
 
 /// White, matrices and integration weights of a [`Contract`] on a [`Grid`].
 #[derive(Clone, Debug, PartialEq)]
@@ -29,7 +33,7 @@ impl Colorimetry {
         }
         let irradiance: Vec<f64> = light.iter().map(|l| l / luminance).collect();
         let weights = weights(&irradiance, &matching);
-        let white = Xyz(column_sums(&weights));
+        let white = sum(&weights);
         let space_white = Xyz::from_chromaticity(contract.space.white());
         let xyz_from_rgb = contract.adaptation.target_from_source(space_white, white)
             * contract.space.xyz_from_rgb();
@@ -93,11 +97,7 @@ impl Colorimetry {
 
     /// The color of a reflectance sampled on the grid.
     pub fn xyz_from_reflectance(&self, reflectance: impl IntoIterator<Item = f64>) -> Xyz {
-        let mut sum = [0.0; 3];
-        for (r, w) in reflectance.into_iter().zip(&self.weights) {
-            (0..3).for_each(|k| sum[k] += r * w[k]);
-        }
-        Xyz(sum)
+        reflectance.into_iter().zip(&self.weights).map(|(r, w)| r * Xyz(*w)).sum()
     }
 
     /// The same eye under another light that brings as much power as this one, in 300 to 830 nm.
@@ -111,7 +111,7 @@ impl Colorimetry {
         let scale = power(&self.irradiance) / power(&light);
         let irradiance: Vec<f64> = light.iter().map(|l| l * scale).collect();
         let weights = weights(&irradiance, &matching);
-        let white = Xyz(column_sums(&weights));
+        let white = sum(&weights);
         Self { irradiance, matching, weights, white, ..self.clone() }
     }
 }
@@ -125,14 +125,14 @@ fn weights(irradiance: &[f64], matching: &[[f64; 3]]) -> Vec<[f64; 3]> {
     irradiance.iter().zip(matching).map(|(e, m)| m.map(|v| e * v)).collect()
 }
 
-fn column_sums(rows: &[[f64; 3]]) -> [f64; 3] {
-    rows.iter().fold([0.0; 3], |sum, row| [0, 1, 2].map(|k| sum[k] + row[k]))
+fn sum(colors: &[[f64; 3]]) -> Xyz {
+    colors.iter().copied().map(Xyz).sum()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Adaptation;
+    use crate::adaptation::Adaptation;
 
     /// Rounding only: sums of a hundred numbers near 0.01.
     const ROUNDING: f64 = 1e-12;

@@ -1,6 +1,11 @@
 //! What must be agreed before RGB means a color.
 
-use crate::{Adaptation, Colorimetry, Grid, Illuminant, Observer, RgbSpace};
+use crate::adaptation::Adaptation;
+use crate::colorimetry::Colorimetry;
+use crate::grid::Grid;
+use crate::illuminant::Illuminant;
+use crate::observer::Observer;
+use crate::rgb_space::RgbSpace;
 
 /// The agreement that turns RGB into a color: nothing in upglow guesses any part of it.
 ///
@@ -86,7 +91,7 @@ impl Contract {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Spectrum;
+    use crate::spectrum::Spectrum;
 
     #[test]
     fn contracts_of_what_is_built_in_hold() {

@@ -1,7 +1,9 @@
 //! The measured dyes that come with the program. A new one is a column of `tables/dyes.csv`.
 
+use crate::grid::Grid;
+use crate::samples::{SampleRules, SamplesError, curves_from_samples};
+use crate::spectrum::Spectrum;
 use crate::tables::dyes::{DYE_SETS, DYES, DYES_FIRST_NM, DYES_STEP_NM, DyeRow};
-use crate::{Grid, SampleRules, SamplesError, Spectrum, curves_from_samples};
 
 /// A dye as somebody measured it.
 #[derive(Clone, Debug, PartialEq)]

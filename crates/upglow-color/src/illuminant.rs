@@ -1,9 +1,9 @@
 //! Light sources.
 
+use crate::grid::Grid;
+use crate::samples::{SampleRules, SamplesError, curves_from_samples};
+use crate::spectrum::{Spectrum, SpectrumCsvError, read_columns};
 use crate::tables::daylight::{DAYLIGHT_COMPONENTS, DAYLIGHT_FIRST_NM, DAYLIGHT_STEP_NM};
-use crate::{
-    Grid, SampleRules, SamplesError, Spectrum, SpectrumCsvError, curves_from_samples, read_columns,
-};
 
 /// A named light: relative spectral power on [`Grid::FINE`], 300 to 830 nm.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,6 +1,7 @@
 //! CIELAB.
 
-use crate::{Matrix3, Xyz};
+use crate::matrix::Matrix3;
+use crate::values::Xyz;
 
 /// CIELAB coordinates relative to a white.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

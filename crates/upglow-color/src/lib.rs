@@ -40,6 +40,8 @@ mod matrix;
 mod metric;
 mod observer;
 mod rgb_space;
+#[doc(hidden)]
+pub mod rounding;
 mod samples;
 mod spectrum;
 mod srgb_curve;

@@ -1,6 +1,10 @@
 //! Color difference metrics. A new one is a variant here: a distance, and residuals with derivatives.
 
-use crate::{Colorimetry, Lab, Matrix3, Xyz, ciede2000_residuals, lab_jacobian};
+use crate::ciede2000::ciede2000_residuals;
+use crate::colorimetry::Colorimetry;
+use crate::lab::{Lab, lab_jacobian};
+use crate::matrix::Matrix3;
+use crate::values::Xyz;
 
 /// How far one color is from another.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -79,8 +83,8 @@ impl Goal {
     pub fn residuals(&self, sample: Xyz) -> ([f64; 3], Matrix3) {
         match self.metric {
             Metric::Rgb => {
-                let difference = [0, 1, 2].map(|k| sample.0[k] - self.xyz.0[k]);
-                (self.scaled_rgb_from_xyz * difference, self.scaled_rgb_from_xyz)
+                let difference = sample - self.xyz;
+                (self.scaled_rgb_from_xyz * difference.0, self.scaled_rgb_from_xyz)
             }
             Metric::De76 => {
                 let (lab, by_xyz) = lab_jacobian(sample, self.white);
@@ -104,7 +108,9 @@ crate::choices!(Metric, "metric", De2000 = "de2000", De76 = "de76", Rgb = "rgb")
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Choice, Contract, Grid};
+    use crate::choice::Choice;
+    use crate::contract::Contract;
+    use crate::grid::Grid;
 
     #[test]
     fn residuals_have_the_distance_as_their_norm_and_exact_derivatives() {

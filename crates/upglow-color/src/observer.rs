@@ -1,10 +1,10 @@
 //! Observers: what an eye makes of light.
 
+use crate::grid::Grid;
+use crate::matrix::Matrix3;
+use crate::samples::{SampleRules, SamplesError, curves_from_samples};
+use crate::spectrum::{Spectrum, SpectrumCsvError, read_columns};
 use crate::tables::observer::{CIE_1931_2DEG, CIE_1931_2DEG_FIRST_NM};
-use crate::{
-    Grid, Matrix3, SampleRules, SamplesError, Spectrum, SpectrumCsvError, curves_from_samples,
-    read_columns,
-};
 
 /// A set of color-matching functions x̄, ȳ, z̄: 0 or more, zero below 360 nm and wherever nobody
 /// measured them, and none a mixture of the others.

@@ -1,6 +1,7 @@
 //! RGB color spaces: primaries and a white. A new space is one line of [`SPACES`].
 
-use crate::{Matrix3, Xyz};
+use crate::matrix::Matrix3;
+use crate::values::Xyz;
 
 /// The primaries and white of an RGB space, as CIE 1931 chromaticities.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-use crate::{Grid, Spectrum};
+use crate::grid::Grid;
+use crate::spectrum::Spectrum;
 
 /// What samples must be to stand for curves.
 ///

@@ -1,7 +1,9 @@
 //! Sampled curves, and the CSV files they come in.
 
+use crate::grid::Grid;
+use crate::rounding::whole;
+use crate::samples::{Place, SampleRules, SamplesError};
 use crate::samples::{Row, Rows};
-use crate::{Grid, Place, SampleRules, SamplesError};
 
 /// A curve over wavelength: samples on a grid, straight lines between them, zero outside.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,7 +67,7 @@ impl Spectrum {
         if !(position >= 0.0 && position <= (self.values.len() - 1) as f64) {
             return 0.0;
         }
-        let below = floor_index(position).min(self.values.len() - 2);
+        let below = whole(position).min(self.values.len() - 2);
         let fraction = position - below as f64;
         self.values[below] * (1.0 - fraction) + self.values[below + 1] * fraction
     }
@@ -102,16 +104,6 @@ impl Spectrum {
         self.values.iter_mut().for_each(|v| *v *= factor);
         self
     }
-}
-
-/// The whole part of a position that is not negative and far below 2⁵².
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "callers have checked the range; the fraction is meant to go"
-)]
-fn floor_index(position: f64) -> usize {
-    position as usize
 }
 
 /// Why a CSV file of curves over wavelength was refused. Lines count from 1.

@@ -106,7 +106,9 @@ impl ColorSolids {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Contract, Grid, LinearRgb};
+    use crate::contract::Contract;
+    use crate::grid::Grid;
+    use crate::values::LinearRgb;
 
     fn standing(rgb: [f64; 3]) -> Standing {
         let colorimetry = Contract::default().on(Grid::FIT);

@@ -1,17 +1,18 @@
 //! Fits tables of sigmoid coefficients for programs that read nothing else.
 
 use upglow::{CoefficientTable, Integrator, Model, Sigmoid};
-use upglow_color::{Contract, Goal, Grid, LinearRgb, Metric, Xyz};
+use upglow_color::rounding::to_single;
+use upglow_color::{Contract, Goal, Grid, LinearRgb, Metric};
 
-use crate::build::Tally;
-use crate::job::Job;
-use crate::parabola::sigmoid_of;
+use crate::cube::{BuildError, Spread, Stage};
+use crate::fitter::Fitter;
+use crate::options::FitOptions;
+use crate::problem::parabola::sigmoid_of;
+use crate::problem::solver::{Jacobian, Residuals, SolverOptions, solve};
 use crate::problem::{PassiveProblem, Shape};
-use crate::rounding::to_single;
-use crate::solver::{Jacobian, Residuals, solve};
-use crate::summary::Spread;
+use crate::progress::Watch;
+use crate::search::job::Job;
 use crate::verify::random_rgb;
-use crate::{BuildError, FitOptions, Fitter, SolverOptions, Watch};
 
 /// Fits the reflectance of every node of a [`CoefficientTable`], on all threads of the current rayon
 /// pool.
@@ -35,7 +36,7 @@ pub fn fit_coefficients(
     let levels = CoefficientTable::levels(resolution);
     let blank = CoefficientTable::new(levels.clone(), blank, None)?;
     let count = 3 * resolution * resolution;
-    let columns = Tally::new("fitting", count, watch)
+    let columns = Stage::new("fitting", count, watch)
         .each(count, |column| Column { fitter: &fitter, table: &blank, column }.follow())?;
     let mut nodes = Vec::with_capacity(blank.nodes().len());
     for of_channel in columns.chunks(resolution * resolution) {
@@ -109,7 +110,7 @@ impl Column<'_> {
     fn from(&self, level: usize, near: [f64; 3]) -> [f64; 3] {
         let problem = self.problem(level);
         let free = solve(&problem.in_shape(Shape::Free), near, &SolverOptions::default()).x;
-        let limit_per_nm = self.fitter.slope_limit_per_nm;
+        let limit_per_nm = self.fitter.context.slope_limit_per_nm;
         if Shape::Free.edge(free).slope_per_nm.abs() <= limit_per_nm {
             return free;
         }
@@ -121,7 +122,7 @@ impl Column<'_> {
 
     /// A gray is flat whatever its neighbors are.
     fn stored(&self, level: usize, found: [f64; 3]) -> Sigmoid {
-        let job = Job { fitter: self.fitter, goal: self.goal(level) };
+        let job = Job { context: &self.fitter.context, goal: self.goal(level) };
         let flat =
             |x: f64| Sigmoid { c0: 0.0, c1: 0.0, c2: x.clamp(-GREATEST_FLAT, GREATEST_FLAT) };
         match job.gray() {
@@ -146,9 +147,9 @@ impl Column<'_> {
         // Black, at any exposure, is black.
         let exposure = if value > 0.0 { (LEAST_SEEN / value).max(1.0) } else { 1.0 };
         let colorimetry = self.fitter.model().colorimetry();
-        let lit = Xyz(self.goal(level).xyz().0.map(|v| v * exposure));
+        let lit = self.goal(level).xyz() * exposure;
         let goal = Metric::De2000.goal(colorimetry, lit);
-        let passive = PassiveProblem { sums: &self.fitter.sums, goal, shape: Shape::Free };
+        let passive = PassiveProblem { sums: &self.fitter.context.sums, goal, shape: Shape::Free };
         LitProblem { passive, exposure }
     }
 }
@@ -179,7 +180,7 @@ impl Residuals<3, 3> for LitProblem<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Unwatched;
+    use crate::progress::Unwatched;
     use upglow_color::RgbSpace;
 
     fn srgb() -> Contract {

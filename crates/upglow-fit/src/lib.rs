@@ -3,7 +3,6 @@
 //! - one color: [`Fitter`], [`Fit`]
 //! - what it takes to show millions of colors: [`StandingTable`]
 //! - a cube: [`build_cube`], [`CubeSummary`], [`verify`]
-//! - underneath: [`solve`], a bounded Levenberg-Marquardt solver for [`Residuals`]
 //!
 //! # Examples
 //!
@@ -23,34 +22,26 @@
 //!
 //! Out of scope: what a renderer needs at run time (crate `upglow`), files' names, printing.
 
-mod build;
 mod coefficients;
+mod cube;
+mod fit;
 mod fitter;
-mod job;
-mod konig2020;
-mod lattice;
-mod least;
 mod options;
-mod parabola;
 mod polish;
 mod problem;
 mod progress;
-mod rounding;
 mod search;
-mod solver;
 mod standing_table;
-mod starts;
-mod summary;
-mod sums;
 mod verify;
 
-pub use build::{BuildError, build_cube};
 pub use coefficients::{fit_coefficients, round_trip};
-pub use fitter::{ColorError, Fit, Fitter};
+pub use cube::{BuildError, CubeSummary, Spread, build_cube};
+pub use fit::Fit;
+pub use fitter::{ColorError, Fitter};
 pub use options::{FitOptions, FitOptionsError, Method};
 pub use polish::Polisher;
 pub use progress::{Progress, Unwatched, Watch};
-pub use solver::{Jacobian, Residuals, SolverOptions, Stop, Summary, jacobian_error, solve};
 pub use standing_table::{Estimate, StandingTable};
-pub use summary::{CubeSummary, Spread};
-pub use verify::{Check, Offender, Place, Stopped, Verdict, VerifyOptions, VerifyReport, verify};
+pub use verify::{
+    Check, Location, Offender, Stopped, Verdict, VerifyOptions, VerifyReport, verify,
+};

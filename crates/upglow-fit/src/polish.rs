@@ -1,23 +1,25 @@
 //! One material for each texel: from a cube's blend to six numbers.
 
+mod candidate;
 mod corner;
 mod descent;
 mod emission;
-mod place;
 mod repeats;
-mod shine;
 mod start;
+mod sums;
 mod texel;
 
 use upglow::{AnalyticModel, Cube, Fluorescence, LengthError, Model, Node};
 use upglow_color::{LinearRgb, Matrix3};
 
-use crate::{FitOptions, FitOptionsError, Fitter};
+use crate::fitter::Fitter;
+use crate::options::{FitOptions, FitOptionsError};
+use crate::problem::parabola::UNIT_NM;
 use corner::{Corner, Corners};
 use emission::Emission;
 use repeats::Repeats;
-use shine::Sums;
 use start::{Family, Glow};
+use sums::SingleSums;
 use texel::Texel;
 
 /// Finds one material for each of millions of colors: what a texture stores.
@@ -52,19 +54,17 @@ use texel::Texel;
 pub struct Polisher<'c> {
     cube: &'c Cube,
     fitter: Fitter,
-    sums: Sums,
+    sums: SingleSums,
     corners: Vec<Corner>,
     /// Of each pair of dyes.
     emissions: Vec<Emission>,
     xyz_from_rgb: Matrix3,
     /// One over X, Y, Z of the perfect diffuser.
-    by_white: [f64; 3],
+    per_white: [f64; 3],
     grays_are_flat: bool,
     slope_limit_per_nm: f64,
 }
 
-/// The fits' unit of wavelength, nm; bells are counted in it too.
-const UNIT_NM: f64 = 100.0;
 /// Ranges of the bells' emission peaks and Stokes shifts.
 const BELL_RANGES_NM: [[f64; 2]; 2] =
     [AnalyticModel::EMISSION_PEAKS_NM, AnalyticModel::STOKES_SHIFTS_NM];
@@ -95,20 +95,21 @@ impl<'c> Polisher<'c> {
             }
             _ => Vec::new(),
         };
-        let diffuser = model.colorimetry().white().0;
-        let xyz_from_rgb = model.colorimetry().xyz_from_rgb_matrix();
-        let white = xyz_from_rgb * [1.0; 3];
-        let by_white = diffuser.map(|v| 1.0 / v);
-        let grays_are_flat = (0..3).all(|k| (white[k] - diffuser[k]).abs() < FLAT);
-        let sums = Sums::new(model);
-        let slope_limit_per_nm = fitter.slope_limit_per_nm;
+        let colorimetry = model.colorimetry();
+        let (diffuser, white) =
+            (colorimetry.white(), colorimetry.xyz_from_rgb(LinearRgb([1.0; 3])));
+        let xyz_from_rgb = colorimetry.xyz_from_rgb_matrix();
+        let per_white = diffuser.0.map(|v| 1.0 / v);
+        let grays_are_flat = (white - diffuser).0.iter().all(|v| v.abs() < FLAT);
+        let sums = SingleSums::new(model);
+        let slope_limit_per_nm = fitter.context.slope_limit_per_nm;
         Ok(Self {
             cube,
             sums,
             corners,
             emissions,
             xyz_from_rgb,
-            by_white,
+            per_white,
             grays_are_flat,
             slope_limit_per_nm,
             fitter,

@@ -3,12 +3,16 @@
 use upglow::{AnalyticModel, DyeModel, Edge, Emitted, ModelOnGrid};
 use upglow_color::{Goal, Matrix3, Xyz};
 
-use crate::parabola::{
-    Chart, MIDDLE_NM, edge_chart, edge_of, feature_chart, feature_numbers, free_chart, scaled,
-    sigmoid_of, steepness,
+pub(crate) mod parabola;
+pub(crate) mod solver;
+pub(crate) mod sums;
+
+use parabola::{
+    Chart, MIDDLE_NM, UNIT_NM, edge_chart, edge_of, feature_chart, feature_numbers, free_chart,
+    scaled, sigmoid_of, steepness,
 };
-use crate::solver::{Jacobian, Residuals};
-use crate::sums::{CLEAR, Lanes, Reflected, Sums, lanes_from};
+use solver::{Jacobian, Residuals};
+use sums::{CLEAR, Lanes, Reflected, Sums, lanes_from};
 
 /// In which coordinates the reflectance moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,10 +36,10 @@ pub(crate) enum Shape {
 /// Coefficients beyond this are steps between two samples.
 const FREE_BOUND: f64 = 1e3;
 /// How far from 565 nm a steepest point may lie, in 100 nm: further out nobody sees it.
-const EDGE_BOUND: f64 = 4.0;
+pub(crate) const EDGE_BOUND: f64 = 4.0;
 /// Greatest level of the steepest point: at the slope limit 0.01/nm the extremum is then 2.5 nm
 /// away, half a step of the sums. Larger lets a fit hide a spike between two samples.
-const LEVEL_BOUND: f64 = 2.5;
+pub(crate) const LEVEL_BOUND: f64 = 2.5;
 /// Widths of features, in 100 nm. Grays lie beyond the greatest.
 const WIDTH_BOUNDS: [f64; 2] = [0.025, 30.0];
 /// Least slope of features, relative to the limit: 0 is no slope at all.
@@ -106,18 +110,18 @@ const FRACTION: [f64; 2] = [0.0, 1.0];
 /// Residuals of a color and their derivatives by unknowns that move it so.
 fn residuals_of<const N: usize>(
     goal: &Goal,
-    color: [f64; 3],
-    derivatives: [[f64; 3]; N],
+    color: Xyz,
+    derivatives: [Xyz; N],
 ) -> ([f64; 3], Jacobian<3, N>) {
-    let (residuals, by_color) = goal.residuals(Xyz(color));
-    let columns = derivatives.map(|d| by_color * d);
+    let (residuals, by_color) = goal.residuals(color);
+    let columns = derivatives.map(|d| by_color * d.0);
     (residuals, [0, 1, 2].map(|i| columns.map(|column| column[i])))
 }
 
 /// Derivatives of the color by the shape's three numbers.
-fn by_shape<const K: usize>(reflected: &Reflected<K>, jacobian: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
-    let by_parabola = Matrix3::from_columns(reflected.by_parabola);
-    [0, 1, 2].map(|v| by_parabola * [0, 1, 2].map(|m| jacobian[m][v]))
+fn by_shape<const K: usize>(reflected: &Reflected<K>, jacobian: [[f64; 3]; 3]) -> [Xyz; 3] {
+    let by_parabola = Matrix3::from_columns(reflected.by_parabola.map(|by| by.0));
+    [0, 1, 2].map(|v| Xyz(by_parabola * [0, 1, 2].map(|m| jacobian[m][v])))
 }
 
 /// Reflectance alone; the unknowns are the shape's numbers.
@@ -133,9 +137,8 @@ impl PassiveProblem<'_> {
     pub(crate) fn eval_lit(&self, x: &[f64; 3], exposure: f64) -> ([f64; 3], Jacobian<3, 3>) {
         let (parabola, jacobian) = self.shape.chart(*x);
         let reflected = self.sums.reflect(parabola, &CLEAR, []);
-        let lit = |color: [f64; 3]| color.map(|v| v * exposure);
-        let derivatives = by_shape(&reflected, jacobian).map(lit);
-        residuals_of(&self.goal, lit(reflected.color), derivatives)
+        let derivatives = by_shape(&reflected, jacobian).map(|by| by * exposure);
+        residuals_of(&self.goal, reflected.color * exposure, derivatives)
     }
 }
 
@@ -170,11 +173,12 @@ impl Residuals<3, 5> for DyeProblem<'_> {
         let reflected = self.sums.reflect(parabola, &absorbed, [a, b]);
         let Emitted { color: emitted, derivatives: [emitted_by_w] } =
             self.model.emitted_by_dyes(self.dyes, self.first, w);
+        let (emitted, emitted_by_w) = (Xyz::from(emitted), Xyz::from(emitted_by_w));
         let [by_s0, by_s1, by_s2] = by_shape(&reflected, jacobian);
         let [seen_a, seen_b] = reflected.seen_by;
-        let color = [0, 1, 2].map(|k| reflected.color[k] + c * emitted[k]);
-        let by_c = [0, 1, 2].map(|k| emitted[k] - (1.0 - w) * seen_a[k] - w * seen_b[k]);
-        let by_w = [0, 1, 2].map(|k| c * (emitted_by_w[k] - seen_b[k] + seen_a[k]));
+        let color = reflected.color + c * emitted;
+        let by_c = emitted - (1.0 - w) * seen_a - w * seen_b;
+        let by_w = c * (emitted_by_w - seen_b + seen_a);
         residuals_of(&self.goal, color, [by_s0, by_s1, by_s2, by_c, by_w])
     }
 
@@ -187,7 +191,7 @@ impl Residuals<3, 5> for DyeProblem<'_> {
 }
 
 /// Reflectance and bells; the unknowns are the shape's numbers, concentration, and emission peak
-/// and Stokes shift in [`BELL_UNIT_NM`].
+/// and Stokes shift in [`UNIT_NM`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BellProblem<'a> {
     pub(crate) sums: &'a Sums,
@@ -197,32 +201,31 @@ pub(crate) struct BellProblem<'a> {
     pub(crate) bells: &'a AnalyticModel,
 }
 
-/// Unit of wavelengths among the unknowns, nm.
-pub(crate) const BELL_UNIT_NM: f64 = 100.0;
-
 impl Residuals<3, 6> for BellProblem<'_> {
     fn eval(&self, &[s0, s1, s2, c, peak, shift]: &[f64; 6]) -> ([f64; 3], Jacobian<3, 6>) {
         let (parabola, jacobian) = self.shape.chart([s0, s1, s2]);
-        let (peak_nm, shift_nm) = (peak * BELL_UNIT_NM, shift * BELL_UNIT_NM);
+        let (peak_nm, shift_nm) = (peak * UNIT_NM, shift * UNIT_NM);
         let [a, a_by_center] = self.sums.sample(|nm| self.bells.absorption(peak_nm - shift_nm, nm));
         let absorbed = lanes_from(|i| c * a[i]);
         let reflected = self.sums.reflect(parabola, &absorbed, [&a, &a_by_center]);
         let Emitted { color: emitted, derivatives: [by_peak_nm, by_shift_nm] } =
             self.model.emitted_by_bells(self.bells, peak_nm, shift_nm);
+        let (emitted, by_peak_nm, by_shift_nm) =
+            (Xyz::from(emitted), Xyz::from(by_peak_nm), Xyz::from(by_shift_nm));
         let [by_s0, by_s1, by_s2] = by_shape(&reflected, jacobian);
         let [seen, seen_by_center] = reflected.seen_by;
-        let color = [0, 1, 2].map(|k| reflected.color[k] + c * emitted[k]);
-        let by_c = [0, 1, 2].map(|k| emitted[k] - seen[k]);
-        let unit = c * BELL_UNIT_NM;
-        let by_peak = [0, 1, 2].map(|k| unit * (by_peak_nm[k] - seen_by_center[k]));
-        let by_shift = [0, 1, 2].map(|k| unit * (by_shift_nm[k] + seen_by_center[k]));
+        let color = reflected.color + c * emitted;
+        let by_c = emitted - seen;
+        let unit = c * UNIT_NM;
+        let by_peak = unit * (by_peak_nm - seen_by_center);
+        let by_shift = unit * (by_shift_nm + seen_by_center);
         residuals_of(&self.goal, color, [by_s0, by_s1, by_s2, by_c, by_peak, by_shift])
     }
 
     fn bounds(&self) -> [[f64; 2]; 6] {
         let [s0, s1, s2] = self.shape.bounds();
         let [peak, shift] = [AnalyticModel::EMISSION_PEAKS_NM, AnalyticModel::STOKES_SHIFTS_NM]
-            .map(|range| range.map(|nm| nm / BELL_UNIT_NM));
+            .map(|range| range.map(|nm| nm / UNIT_NM));
         [s0, s1, s2, FRACTION, peak, shift]
     }
 }
@@ -283,7 +286,7 @@ impl<const N: usize, P: Residuals<3, N>> Residuals<4, N> for LimitedProblem<'_, 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solver::jacobian_error;
+    use crate::problem::solver::jacobian_error;
     use upglow::{Accounting, DyeOptions, DyeSet, Mixing, Model};
     use upglow_color::{Choice, Colorimetry, Contract, Grid, LinearRgb, Metric};
 

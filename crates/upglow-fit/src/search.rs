@@ -1,16 +1,20 @@
 //! Our way to the material of a color: reflectance first, then the most promising starts.
 
+pub(crate) mod context;
+pub(crate) mod job;
+pub(crate) mod konig2020;
+mod least;
+mod starts;
+
 use upglow::{DyeModel, Fluorescence, Model};
 use upglow_color::{Metric, ciede2000};
 
-use crate::Fit;
-use crate::fitter::EXACT;
-use crate::job::{Job, Solve};
-use crate::least::LeastConcentration;
-use crate::parabola::{MIDDLE_NM, sigmoid_of};
+use crate::fit::{EXACT, Fit, Start};
 use crate::problem::Shape;
-use crate::solver::{Residuals, SolverOptions, Summary, solve};
-use crate::starts::Start;
+use crate::problem::parabola::{MIDDLE_NM, sigmoid_of};
+use crate::problem::solver::{Residuals, SolverOptions, Summary, solve};
+use job::{Job, Solve};
+use least::LeastConcentration;
 
 /// Evaluations for a reflectance without limits: it takes 5, and 10 where it goes astray.
 const PASSIVE_STEPS: usize = 12;
@@ -80,7 +84,7 @@ impl Job<'_> {
         if count == 0 || known.is_some_and(|fit| fit.is_matched()) {
             return known;
         }
-        self.best_of(known, self.fitter.starts.nearest(&self.goal).into_iter().take(count))
+        self.best_of(known, self.context.starts.nearest(&self.goal).into_iter().take(count))
     }
 
     /// The best of `known` and of where `starts` lead. The first match ends it, with as little
@@ -103,7 +107,7 @@ impl Job<'_> {
     /// Whether a neighbor's material is a start: a gray cannot move in the coordinates of its edge,
     /// and where dyes are needed one without is no nearer than the table's.
     fn leads(&self, fit: &Fit) -> bool {
-        let may_fluoresce = *self.fitter.model.model() != Model::Reflectance;
+        let may_fluoresce = *self.context.model.model() != Model::Reflectance;
         fit.reflectance.slope_per_nm != 0.0
             && (fit.fluorescence != Fluorescence::None || !may_fluoresce)
     }
@@ -111,7 +115,7 @@ impl Job<'_> {
     /// How many starts of the table are tried where the neighbors' materials miss.
     fn starts_against_doubt(&self, around: &[Fit], kinds: usize) -> usize {
         let is_beside_a_match = around.iter().any(Fit::is_matched);
-        match self.fitter.model.model() {
+        match self.context.model.model() {
             Model::Reflectance if is_beside_a_match => PASSIVE_STARTS_BESIDE_A_MATCH,
             Model::Reflectance => 0,
             _ if is_beside_a_match => STARTS_BESIDE_A_MATCH,
@@ -128,7 +132,7 @@ impl Job<'_> {
         {
             return passive;
         }
-        for start in self.fitter.starts.nearest_of_each(&self.goal, EXHAUSTIVE_STARTS) {
+        for start in self.context.starts.nearest_of_each(&self.goal, EXHAUSTIVE_STARTS) {
             best = Some(nearer(best, self.lead_on(start)));
         }
         best.expect("there is at least one start")
@@ -166,9 +170,9 @@ impl Job<'_> {
         let problem = in_lab.passive_problem(Shape::Free);
         let options = SolverOptions { step_limit: PASSIVE_STEPS, ..SolverOptions::default() };
         let free = solve(&problem, [0.0; 3], &options);
-        self.fitter.count(free.evaluations);
+        self.context.count(free.evaluations);
         let reflectance = sigmoid_of(free.x).to_edge(MIDDLE_NM);
-        let steepness = reflectance.slope_per_nm.abs() / self.fitter.slope_limit_per_nm;
+        let steepness = reflectance.slope_per_nm.abs() / self.context.slope_limit_per_nm;
         if steepness <= 1.0 {
             return Some(self.judge(reflectance, Fluorescence::None));
         }
@@ -181,7 +185,7 @@ impl Job<'_> {
     /// Where a start leads, over to the next pairs of dyes too.
     fn lead_on(&self, start: Start) -> Fit {
         let mut best = self.follow(start, self.edge_shape(), &NearestColor);
-        if let Model::Dyes(dyes) = self.fitter.model.model() {
+        if let Model::Dyes(dyes) = self.context.model.model() {
             for _ in 0..MOST_HOPS {
                 let Some(next) = next_pair(dyes, best) else { break };
                 let found = self.follow(next, self.edge_shape(), &NearestColor);

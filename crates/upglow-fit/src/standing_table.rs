@@ -1,14 +1,14 @@
 //! Where millions of colors stand: the answers of [`ColorSolids`](upglow_color::ColorSolids), from
 //! convexity instead of a search.
 
-mod lattice;
+mod boxes;
 mod reach;
 
 use std::sync::OnceLock;
 
 use upglow_color::{Colorimetry, Contract, LinearRgb, Standing, StandingKind};
 
-use lattice::{Cell, Lattice};
+use boxes::{BoxLattice, Cell};
 use reach::Reach;
 
 /// The answers of [`ColorSolids::standing`](upglow_color::ColorSolids::standing) under one contract, fast enough for every texel of a picture.
@@ -24,7 +24,7 @@ pub struct StandingTable {
     /// Black and white, which fill whole parts of pictures and lie on a surface.
     known: [(LinearRgb, StandingKind); 2],
     /// `[size][sign of blue, green, red]`.
-    lattices: Vec<OnceLock<Lattice>>,
+    lattices: Vec<OnceLock<BoxLattice>>,
 }
 
 /// Where a color stands, and about how far it is from what it is beyond.
@@ -105,7 +105,7 @@ impl StandingTable {
     }
 
     /// The kind, and the lattice with the box around `rgb`, where there is one.
-    fn look(&self, rgb: LinearRgb) -> (StandingKind, Option<&Lattice>) {
+    fn look(&self, rgb: LinearRgb) -> (StandingKind, Option<&BoxLattice>) {
         let Some(mut lattice) = self.lattice(rgb) else {
             return (self.reach.kind(rgb), None);
         };
@@ -126,7 +126,7 @@ impl StandingTable {
     }
 
     /// The lattice whose size fits `rgb`; `None` if none is large enough.
-    fn lattice(&self, rgb: LinearRgb) -> Option<&Lattice> {
+    fn lattice(&self, rgb: LinearRgb) -> Option<&BoxLattice> {
         let [r, g, b] = rgb.0;
         let largest = r.abs().max(g.abs()).max(b.abs());
         // A sum is finite only if its parts are, where none is near the largest number.
@@ -136,7 +136,7 @@ impl StandingTable {
         let exponent = exponent_above(largest).max(SMALLEST_EXPONENT);
         let size = usize::try_from(LARGEST_EXPONENT - exponent).ok()?;
         let octant = rgb.0.iter().rev().fold(0, |o, v| o << 1 | usize::from(v.is_sign_negative()));
-        let new = || Lattice::around_black(exponent, octant);
+        let new = || BoxLattice::around_black(exponent, octant);
         Some(self.lattices[size * OCTANTS + octant].get_or_init(new))
     }
 }

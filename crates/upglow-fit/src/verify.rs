@@ -1,22 +1,22 @@
 //! Recomputes what a cube promises from its stored numbers alone.
 
+mod finding;
 mod inspector;
 mod laws;
 mod report;
 mod spectra;
 mod subjects;
-mod tally;
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 use upglow::{Cube, DyeCurves, Interpolation, Model};
 
-pub use report::{Check, Offender, Place, Stopped, Verdict, VerifyReport};
+pub use report::{Check, Location, Offender, Stopped, Verdict, VerifyReport};
 pub(crate) use subjects::random_rgb;
 
-use crate::summary::Spread;
-use crate::{Progress, Watch};
+use crate::cube::Spread;
+use crate::progress::{Progress, Watch};
 use inspector::{Figure, Findings, Inspector};
 use laws::{LAWS, Law, verdict};
 use spectra::Spectra;
@@ -82,7 +82,7 @@ pub fn verify(
 fn checks(cube: &Cube, inspector: &Inspector<'_>, findings: Findings) -> Vec<Check> {
     let between_exact = between_exact(inspector, &findings);
     let laws = inspector.rules().iter().zip(findings.laws);
-    let mut checks: Vec<Check> = laws.map(|(rule, tally)| rule.check(tally, cube)).collect();
+    let mut checks: Vec<Check> = laws.map(|(rule, outcome)| rule.check(outcome, cube)).collect();
     debug_assert_eq!(checks.len(), LAWS.len());
     checks.push(dye_curves(cube.model()));
     checks.extend(grid_checks(GRID_NODES, findings.grid_nodes, cube));
@@ -133,9 +133,9 @@ const GRID_POINTS: MeanAndMax = [
 ];
 
 fn grid_checks([mean, max]: MeanAndMax, found: Figure, cube: &Cube) -> [Check; 2] {
-    let worst = found.tally.worst.map(|worst| worst.offender(cube));
+    let worst = found.outcome.worst.map(|worst| worst.offender(cube));
     let spread = Spread::of(found.values);
-    let checked = found.tally.checked;
+    let checked = found.outcome.checked;
     let violations = usize::from(spread.mean.is_nan() || spread.mean > GRID_LIMIT);
     [
         Check {
@@ -152,9 +152,9 @@ fn grid_checks([mean, max]: MeanAndMax, found: Figure, cube: &Cube) -> [Check; 2
 }
 
 fn point_figures(found: Figure, cube: &Cube) -> [Check; 3] {
-    let worst = found.tally.worst.map(|worst| worst.offender(cube));
+    let worst = found.outcome.worst.map(|worst| worst.offender(cube));
     let spread = Spread::of(found.values);
-    let of = |value| figure(value, found.tally.checked);
+    let of = |value| figure(value, found.outcome.checked);
     [
         Check {
             name: "points-mean",
@@ -185,9 +185,9 @@ fn dye_curves(model: &Model) -> Check {
     };
     let faults: Vec<f64> = dyes.iter().map(|(curves, _)| curve_fault(curves)).collect();
     let violations = faults.iter().filter(|&&fault| fault > LIMIT).count();
-    let (value, at) = tally::greatest(faults.iter().copied());
+    let (value, at) = finding::greatest(faults.iter().copied());
     let worst = dyes.get(at).map(|(_, dye)| Offender {
-        place: Place::Dye { name: dye.name.clone() },
+        place: Location::Dye { name: dye.name.clone() },
         wavelength_nm: None,
         found: value,
     });
@@ -213,7 +213,7 @@ fn curve_fault(curves: &DyeCurves) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Unwatched;
+    use crate::progress::Unwatched;
     use upglow::{
         Accounting, AnalyticModel, DyeModel, DyeOptions, DyeSet, Edge, FitRecord, Fluorescence,
         Mixing, ModelOnGrid, Node, QuantumYield, Sigmoid,
@@ -291,7 +291,7 @@ mod tests {
     }
 
     /// The names of the laws that are broken in a cube with one changed node, and where.
-    fn broken(index: usize, change: impl Fn(&mut Node)) -> Vec<(&'static str, Place)> {
+    fn broken(index: usize, change: impl Fn(&mut Node)) -> Vec<(&'static str, Location)> {
         let cube = cube(Contract::default(), dyes(), |i, node| {
             if i == index {
                 change(node);
@@ -317,7 +317,7 @@ mod tests {
     #[test]
     fn a_slope_above_the_limit_is_caught_and_named() {
         let found = broken(COLORED, |node| node.reflectance[2] = 0.010_001);
-        let node = Place::Node { node: [1, 0, 2], rgb: LinearRgb([2.0 / 3.0, 0.0, 1.0 / 3.0]) };
+        let node = Location::Node { node: [1, 0, 2], rgb: LinearRgb([2.0 / 3.0, 0.0, 1.0 / 3.0]) };
         assert_eq!(found, [("slope", node)]);
     }
 
@@ -336,7 +336,7 @@ mod tests {
     #[test]
     fn a_white_that_is_not_quite_white_is_caught() {
         let found = broken(WHITE, |node| node.reflectance[1] = 1000.0);
-        let white = Place::Node { node: [3; 3], rgb: LinearRgb([1.0; 3]) };
+        let white = Location::Node { node: [3; 3], rgb: LinearRgb([1.0; 3]) };
         assert_eq!(found, [("white-black", white)]);
     }
 

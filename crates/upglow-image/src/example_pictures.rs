@@ -1,6 +1,6 @@
 //! Pictures to try the program with, by formula: no free picture has colors this wide.
 
-use crate::rounding::to_single;
+use upglow_color::rounding::to_single;
 
 /// A picture in linear ACEScg, each channel 0..=1.
 #[derive(Clone, Copy, Debug)]

@@ -40,7 +40,6 @@ mod check;
 mod example_pictures;
 mod exr;
 mod picture;
-mod rounding;
 mod spectral;
 
 pub use bake::material_picture::MaterialPicture;

@@ -24,7 +24,6 @@
 
 mod language;
 mod payload;
-mod rounding;
 mod shader;
 mod template;
 mod textures;

@@ -4,10 +4,10 @@ use std::fmt::Write as _;
 
 use upglow::{Accounting, AnalyticModel, Cube, Model};
 use upglow_color::Grid;
+use upglow_color::rounding::to_single;
 
 use crate::Language;
 use crate::payload::{checksum, payload};
-use crate::rounding::to_single;
 use crate::template::functions;
 use crate::textures::{BINS, Texture, curves, nodes};
 use crate::tiff::tiff;

@@ -1,10 +1,10 @@
 //! A cube's numbers as two textures of four floats a texel.
 
 use upglow::{Cube, DyeModel, Fluorescence, Material, Mixture, Model, Sigmoid};
+use upglow_color::rounding::to_single;
 use upglow_color::{Grid, Spectrum};
 
 use crate::ShaderError;
-use crate::rounding::to_single;
 
 /// Most texels along an axis that every driver takes: `WebGPU`'s own limit, and above what OpenGL ES
 /// and Direct3D 10 ask for.

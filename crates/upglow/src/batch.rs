@@ -3,9 +3,9 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch, f32x4, f32x16, i32x16, mask32x16};
 use upglow_color::Colorimetry;
+use upglow_color::rounding::to_single;
 
 use crate::lookup_table::axis;
-use crate::rounding::to_single;
 use crate::{Cube, ModelOnGrid};
 
 /// The colors that the materials of a [`Cube`] have under the contract's light.

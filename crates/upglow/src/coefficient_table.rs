@@ -1,9 +1,9 @@
 //! Tables of sigmoid coefficients as other renderers read them: `.coeff` files.
 
+use upglow_color::rounding::{to_single, whole};
 use upglow_color::{Contract, Grid, LinearRgb};
 
 use crate::Sigmoid;
-use crate::rounding::{to_single, whole};
 
 /// Reflectances for the RGB colors of a unit cube, in the layout that `rgb2spec` defined and that
 /// Mitsuba 3, pbrt-v4 and colour-science read.

@@ -1,9 +1,9 @@
 //! A cube of materials: one for each node of a grid over RGB.
 
+use upglow_color::rounding::to_single;
 use upglow_color::{Contract, LinearRgb};
 
 use crate::interpolation::tetrahedron;
-use crate::rounding::to_single;
 use crate::{Edge, Fluorescence, Interpolation, Material, Mixture, Model};
 
 /// Materials for every node of a regular grid over linear RGB 0..=1, in single precision.

@@ -2,12 +2,12 @@
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x4, i32x4};
+use upglow_color::rounding::to_single;
 use upglow_color::{Grid, Spectrum};
 
 use crate::lookup_table::smaller_of;
 use crate::packed_mixture::transposed;
 use crate::quantile_table::QuantileTable;
-use crate::rounding::to_single;
 use crate::{DyeModel, Model};
 
 /// The range of [`Grid::FINE`], whose step is 1 nm.

@@ -1,9 +1,9 @@
 //! Curves as densities that wavelengths are drawn from.
 
 use upglow_color::Spectrum;
+use upglow_color::rounding::whole;
 
 use crate::Accounting;
-use crate::rounding::whole;
 
 /// Entries of the table that starts a search. More take room in the caches; fewer leave more bins
 /// of 1 nm to walk through.

@@ -59,7 +59,6 @@ mod packed_sampling;
 mod quantile_table;
 #[cfg(test)]
 mod random;
-mod rounding;
 mod sampling;
 mod sigmoid;
 

@@ -1,9 +1,10 @@
 //! A cube compiled for looking up millions of colors.
 
+use upglow_color::rounding::to_single;
+
 use crate::curve_table::CurveTable;
 use crate::packed_mixture::{Bells, PackedMixture, with_baseline};
 use crate::packed_node::PackedNode;
-use crate::rounding::to_single;
 use crate::{Cube, LookupError, Mixing, Model};
 use fearless_simd::{Level, dispatch};
 

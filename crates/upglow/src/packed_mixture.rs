@@ -3,13 +3,14 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch, f32x4, f32x8, i32x4};
 
+use upglow_color::rounding::to_single;
+
 use crate::bispectral::Bispectral;
 use crate::curve_table::{Curves, DyeNumbers, whole};
 use crate::inverse_root::{twice_inverse_root, twice_inverse_root8};
 use crate::lookup_table::{LookupTable, greater_of};
 use crate::packed_node::{PackedBells, PackedDyes, PackedNode, PackedReflectance};
 use crate::packed_sampling::{elastic, ratio, shifted};
-use crate::rounding::to_single;
 use crate::sampling::Sample;
 use crate::{Accounting, Model};
 

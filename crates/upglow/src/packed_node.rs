@@ -1,10 +1,11 @@
 //! The packed layout of a material, which look-up tables, shaders and bindings read.
 
+use upglow_color::rounding::to_single;
+
 use crate::cube::{Cube, Node};
 use crate::edge::Edge;
 use crate::material::Fluorescence;
 use crate::model::Model;
-use crate::rounding::to_single;
 
 /// One material as devices read it: eight numbers in single precision, all finite.
 ///

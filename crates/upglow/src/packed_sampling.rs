@@ -3,11 +3,12 @@
 
 use fearless_simd::Simd;
 
+use upglow_color::rounding::to_single;
+
 use crate::curve_table::{DyeNumbers, whole};
 use crate::material::Lobe;
 use crate::packed_mixture::{PackedMixture, PerLobe, sum};
 use crate::packed_node::{PackedBells, PackedDyes};
-use crate::rounding::to_single;
 use crate::{Accounting, Draw, Fluorescence, Model, Sample};
 
 impl<'t> PackedMixture<'t> {

@@ -2,10 +2,10 @@
 
 use fearless_simd::Simd;
 use upglow_color::Spectrum;
+use upglow_color::rounding::to_single;
 
 use crate::curve_table::{BINS, FIRST_NM, whole};
 use crate::lookup_table::{greater_of, smaller_of};
-use crate::rounding::to_single;
 
 /// Where a search starts, for each 1/256 of the area. More take room in the caches; fewer leave
 /// more bins of 1 nm to step over.

@@ -1,11 +1,11 @@
 //! What polishing needs of a cube's nodes.
 
 use upglow::{Cube, Edge, Fluorescence, ModelOnGrid};
+use upglow_color::rounding::to_single;
 
-use crate::parabola::{edge_of, scaled};
 use crate::polish::in_units;
-use crate::polish::shine::CHART_NM;
-use crate::rounding::to_single;
+use crate::polish::sums::CHART_NM;
+use crate::problem::parabola::{edge_of, scaled};
 
 /// What polishing needs of a node, one cache line.
 #[derive(Clone, Copy, Debug)]

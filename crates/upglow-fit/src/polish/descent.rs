@@ -1,5 +1,7 @@
 //! Steps from a start to a color, within bounds, changing as little as possible.
 
+use crate::problem::solver::solve_positive;
+
 /// Unknowns of a material: three of the reflectance, concentration, two of the fluorescence.
 pub(super) const UNKNOWNS: usize = 6;
 
@@ -9,12 +11,6 @@ pub(super) type Unknowns = [f64; UNKNOWNS];
 pub(super) type Vector = [f64; 3];
 /// Least and greatest value of each unknown.
 pub(super) type Bounds = [[f64; 2]; UNKNOWNS];
-
-/// How far from 565 nm a steepest point may lie, in 100 nm: further out nobody sees it.
-pub(super) const EDGE_BOUND: f64 = 4.0;
-/// Greatest level of a steepest point: at the slope limit 0.01/nm the extremum is then 2.5 nm away,
-/// half a step of the sums. Larger lets a spike hide between two samples.
-pub(super) const LEVEL_BOUND: f64 = 2.5;
 
 /// A place, its color, and how that changes with the unknowns, `[unknown][X Y Z]`.
 #[derive(Clone, Copy, Debug)]
@@ -180,32 +176,6 @@ pub(super) fn dot<const M: usize>(a: &[f64; M], b: &[f64; M]) -> f64 {
         sum += a[i] * b[i];
     }
     sum
-}
-
-/// Solves a positive definite system given by its lower triangle, as L·D·Lᵀ.
-#[inline(always)]
-fn solve_positive<const M: usize>(mut a: [[f64; M]; M], mut b: [f64; M]) -> Option<[f64; M]> {
-    let mut inverse = [0.0; M];
-    for k in 0..M {
-        inverse[k] = 1.0 / a[k][k];
-        if !(a[k][k] > 0.0 && inverse[k].is_finite()) {
-            return None;
-        }
-        for i in k + 1..M {
-            let factor = a[i][k] * inverse[k];
-            for j in k + 1..i + 1 {
-                a[i][j] -= factor * a[j][k];
-            }
-            b[i] -= factor * b[k];
-        }
-    }
-    for k in (0..M).rev() {
-        for i in k + 1..M {
-            b[k] -= a[i][k] * b[i];
-        }
-        b[k] *= inverse[k];
-    }
-    Some(b)
 }
 
 /// Solves three equations, rows first; `None` where they have no one solution.

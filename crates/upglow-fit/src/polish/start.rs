@@ -2,10 +2,9 @@
 
 use upglow::{Edge, Features, Model};
 
-use crate::parabola::{MIDDLE_NM, edge_of, feature_chart, scaled, sigmoid_of};
-use crate::polish::UNIT_NM;
 use crate::polish::corner::{Corner, Corners, all, mean};
-use crate::polish::descent::LEVEL_BOUND;
+use crate::problem::LEVEL_BOUND;
+use crate::problem::parabola::{MIDDLE_NM, UNIT_NM, edge_of, feature_chart, scaled, sigmoid_of};
 
 /// Which curves fluoresce.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,17 +3,17 @@
 use upglow::{Edge, Fluorescence, Node, Sigmoid};
 use upglow_color::{Goal, LinearRgb, Matrix3, Metric, Xyz};
 
-use crate::fitter::EXACT;
-use crate::parabola::MIDDLE_NM;
+use crate::fit::EXACT;
 use crate::polish::Polisher;
+use crate::polish::candidate::{Candidate, STEEPNESS_WEIGHT, Shape, bounds, inside, value_bounds};
 use crate::polish::corner::{Corners, all, mean};
 use crate::polish::descent::{
     Bounds, LEAST_DAMPING, Limits, Measure, Point, Unknowns, Vector, dot, shortest_step, solve,
     within,
 };
-use crate::polish::place::{Place, STEEPNESS_WEIGHT, Shape, bounds, inside, value_bounds};
-use crate::polish::shine::Shown;
 use crate::polish::start::{self, Family, Glow};
+use crate::polish::sums::Shown;
+use crate::problem::parabola::MIDDLE_NM;
 
 /// CIEDE2000 is at most this many times a small distance in Lab: 1.5 near gray, where it stretches
 /// a*, and little more in the blue, where it turns. A test looks for more.
@@ -67,10 +67,10 @@ struct LabAround {
 
 impl LabAround {
     #[inline(always)]
-    fn new(target: Vector, by_white: &Vector) -> Self {
+    fn new(target: Vector, per_white: &Vector) -> Self {
         let mut slopes = [0.0; 3];
         for k in 0..3 {
-            slopes[k] = response_slope(target[k] * by_white[k]) * by_white[k];
+            slopes[k] = response_slope(target[k] * per_white[k]) * per_white[k];
         }
         let [x, y, z] = slopes;
         Self {
@@ -153,7 +153,7 @@ impl<'p, 'c, 'n> Texel<'p, 'c, 'n> {
         for (row, sum) in polisher.xyz_from_rgb.0.iter().zip(&mut target) {
             *sum = dot(row, &rgb.0);
         }
-        let lab = LabAround::new(target, &polisher.by_white);
+        let lab = LabAround::new(target, &polisher.per_white);
         Self { polisher, rgb, target, lab, corners }
     }
 
@@ -191,13 +191,13 @@ impl<'p, 'c, 'n> Texel<'p, 'c, 'n> {
             return self.within_limit(shape.edge(), Fluorescence::None);
         }
         let [c, u, v] = glow.numbers;
-        let place = polisher.place([a, b, d, c, u, v]);
-        let here = polisher.point_of_values(glow.family, &place);
+        let candidate = polisher.candidate([a, b, d, c, u, v]);
+        let here = polisher.point_of_values(glow.family, &candidate);
         let bounds = bounds(glow.family, polisher.cube.model());
-        let place = self.glowing_step(&here, &place, bounds);
-        let [.., c, u, v] = place.x;
+        let candidate = self.glowing_step(&here, &candidate, bounds);
+        let [.., c, u, v] = candidate.x;
         let fluorescence = Glow { family: glow.family, numbers: [c, u, v] }.fluorescence();
-        self.within_limit(place.shape.edge(), fluorescence)
+        self.within_limit(candidate.shape.edge(), fluorescence)
     }
 
     /// A reflectance made as soft as the limit demands.
@@ -265,16 +265,16 @@ impl<'p, 'c, 'n> Texel<'p, 'c, 'n> {
         let family = glow.family;
         let bounds = bounds(family, polisher.cube.model());
         let ([a, b, d], [c, u, v]) = (inside(self.mean_values()), glow.numbers);
-        let mut place = polisher.place([a, b, d, c, u, v]);
-        let mut here = polisher.point_of_values(family, &place);
+        let mut candidate = polisher.candidate([a, b, d, c, u, v]);
+        let mut here = polisher.point_of_values(family, &candidate);
         let mut norm = here.norm(&self.lab);
         let mut setbacks = 0;
         for _ in 0..GLOWING_STEPS {
-            let steep = place.steepness.squared;
+            let steep = candidate.steepness.squared;
             if norm <= NEAR && steep <= 1.0 {
-                return Some(glowing_node(family, &place, norm));
+                return Some(glowing_node(family, &candidate, norm));
             }
-            let next = self.glowing_step(&here, &place, bounds);
+            let next = self.glowing_step(&here, &candidate, bounds);
             let there = if norm <= DERIVATIVES_HOLD {
                 let color = polisher.color_of_values(family, &next);
                 Point { x: next.x, color, by: here.by }
@@ -288,27 +288,33 @@ impl<'p, 'c, 'n> Texel<'p, 'c, 'n> {
                     return None;
                 }
             }
-            (here, place, norm) = (there, next, next_norm);
+            (here, candidate, norm) = (there, next, next_norm);
         }
         None
     }
 
     /// Where a step in the chart of values leads; `bounds` are those of the fluorescence.
     #[inline(always)]
-    fn glowing_step(&self, here: &Point, place: &Place, mut bounds: Bounds) -> Place {
+    fn glowing_step(&self, here: &Point, candidate: &Candidate, mut bounds: Bounds) -> Candidate {
         for i in 0..3 {
-            bounds[i] = value_bounds(place.x[i]);
+            bounds[i] = value_bounds(candidate.x[i]);
         }
-        if place.steepness.squared <= 1.0 {
+        if candidate.steepness.squared <= 1.0 {
             let (residual, by) = here.measured(&self.lab);
             let next = shortest_step(&here.x, &residual, &by, &bounds, LEAST_DAMPING);
-            let next = self.polisher.place(next);
+            let next = self.polisher.candidate(next);
             if next.steepness.squared <= 1.0 {
                 return next;
             }
         }
         let polisher = self.polisher;
-        polisher.place(polisher.step_along_limit(here, place, &self.lab, &bounds, LEAST_DAMPING))
+        polisher.candidate(polisher.step_along_limit(
+            here,
+            candidate,
+            &self.lab,
+            &bounds,
+            LEAST_DAMPING,
+        ))
     }
 
     /// The nearest material that the starts lead to, in the chart of edges.
@@ -405,12 +411,12 @@ impl Found {
     }
 }
 
-/// What a place lacks in color and slope.
+/// What a candidate lacks in color and slope.
 fn merit(norm: f64, steepness_squared: f64) -> f64 {
     norm + STEEPNESS_WEIGHT * (steepness_squared - 1.0).max(0.0)
 }
 
-fn glowing_node(family: Family, found: &Place, lab_distance: f64) -> Node {
+fn glowing_node(family: Family, found: &Candidate, lab_distance: f64) -> Node {
     let [.., c, u, v] = found.x;
     let fluorescence = Glow { family, numbers: [c, u, v] }.fluorescence();
     node(found.shape.edge(), fluorescence, lab_distance)

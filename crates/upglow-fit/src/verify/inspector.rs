@@ -4,11 +4,11 @@ use upglow::{Bispectral, Cube, Interpolation, Mixture, ModelOnGrid};
 use upglow_color::{LinearRgb, Xyz, ciede2000};
 
 use super::VerifyOptions;
+use super::finding::{Finding, Outcome, Subject, greatest, worse};
 use super::laws::{LAWS, Law, Rule};
 use super::spectra::{Sampler, Spectra};
 use super::subjects::Subjects;
-use super::tally::{Finding, Subject, Tally, greatest, worse};
-use crate::CubeSummary;
+use crate::cube::CubeSummary;
 
 /// Random colors that are compared with the run-time library. Fewer would miss the rarer dyes;
 /// each takes a millisecond.
@@ -21,7 +21,7 @@ const PAIR_POINTS: usize = 4;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Findings {
     /// One for each of [`LAWS`].
-    pub(super) laws: [Tally; LAWS.len()],
+    pub(super) laws: [Outcome; LAWS.len()],
     /// 1 nm against 5 nm, nodes.
     pub(super) grid_nodes: Figure,
     /// 1 nm against 5 nm, random colors.
@@ -34,7 +34,7 @@ pub(super) struct Findings {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Figure {
     pub(super) values: Vec<f64>,
-    pub(super) tally: Tally,
+    pub(super) outcome: Outcome,
 }
 
 /// A cube and everything that all its colors share.
@@ -49,8 +49,8 @@ pub(super) struct Inspector<'c> {
 impl Findings {
     /// Adds what a later piece found.
     pub(super) fn add(&mut self, later: Self) {
-        for (sum, tally) in self.laws.iter_mut().zip(later.laws) {
-            sum.add(tally);
+        for (sum, outcome) in self.laws.iter_mut().zip(later.laws) {
+            sum.add(outcome);
         }
         self.grid_nodes.add(later.grid_nodes);
         self.grid_points.add(later.grid_points);
@@ -61,12 +61,12 @@ impl Findings {
 impl Figure {
     fn see(&mut self, finding: Finding) {
         self.values.push(finding.value);
-        self.tally.see(finding, f64::INFINITY);
+        self.outcome.see(finding, f64::INFINITY);
     }
 
     fn add(&mut self, later: Self) {
         self.values.extend(later.values);
-        self.tally.add(later.tally);
+        self.outcome.add(later.outcome);
     }
 }
 
@@ -192,12 +192,12 @@ impl<'c> Inspector<'c> {
     fn see_color(&self, subject: Subject, spectra: &Spectra, findings: &mut Findings) {
         let rgb = subject.rgb(self.cube);
         let [fit, fine] = [&self.sampler.fit, &self.sampler.fine].map(|sums| &sums.colorimetry);
-        let by_fit = fit.lab_from_xyz(self.sampler.fit_color(spectra));
-        let by_fine = fine.lab_from_xyz(self.sampler.fine_color(spectra));
+        let fit_lab = fit.lab_from_xyz(self.sampler.fit_color(spectra));
+        let fine_lab = fine.lab_from_xyz(self.sampler.fine_color(spectra));
         let target = fit.lab_from_xyz(fit.xyz_from_rgb(rgb));
-        let missed = ciede2000(target, by_fit);
+        let missed = ciede2000(target, fit_lab);
         let finding = |value| Finding { value, subject, wavelength_nm: None };
-        let between_grids = finding(ciede2000(by_fit, by_fine));
+        let between_grids = finding(ciede2000(fit_lab, fine_lab));
         match subject {
             Subject::Node(index) => {
                 let stored = f64::from(self.cube.nodes()[index].de2000);
@@ -263,16 +263,16 @@ impl<'c> Inspector<'c> {
         let colorimetry = &self.sampler.fine.colorimetry;
         let nm = &*self.sampler.wavelengths_nm;
         let reflected = nm.iter().map(|&nm| mixture.reflectance(nm));
-        let mut color = colorimetry.xyz_from_reflectance(reflected).0;
+        let mut color = colorimetry.xyz_from_reflectance(reflected);
         if mixture.is_fluorescent() {
             for (&out_nm, matching) in nm.iter().zip(colorimetry.matching()) {
                 let pairs = nm.iter().zip(colorimetry.irradiance());
                 let arrives: f64 =
                     pairs.map(|(&in_nm, e)| e * mixture.reradiation_per_nm(in_nm, out_nm)).sum();
-                (0..3).for_each(|k| color[k] += arrives * matching[k]);
+                color += arrives * Xyz(*matching);
             }
         }
-        Xyz(color)
+        color
     }
 
     fn nm(&self, index: usize) -> Option<f64> {
@@ -282,5 +282,5 @@ impl<'c> Inspector<'c> {
 
 /// The greatest difference of tristimulus values.
 fn difference((a, b): (Xyz, Xyz)) -> f64 {
-    greatest((0..3).map(|k| (a.0[k] - b.0[k]).abs())).0
+    greatest((a - b).0.into_iter().map(f64::abs)).0
 }

@@ -4,9 +4,9 @@ use upglow::{Cube, Interpolation};
 use upglow_color::Adaptation;
 
 use super::VerifyOptions;
-use super::tally::Tally;
+use super::finding::Outcome;
 use super::{Check, Verdict};
-use crate::CubeSummary;
+use crate::cube::CubeSummary;
 
 /// A law that each color keeps or breaks by itself. A new one is a variant, an entry in
 /// [`LAWS`], its [`Rule`] and the place that sees its values.
@@ -147,7 +147,7 @@ impl Rule {
     }
 
     /// The report of what was found under this rule.
-    pub(super) fn check(&self, found: Tally, cube: &Cube) -> Check {
+    pub(super) fn check(&self, found: Outcome, cube: &Cube) -> Check {
         Check {
             name: self.name,
             about: self.about,

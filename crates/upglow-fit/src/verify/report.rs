@@ -91,7 +91,7 @@ impl fmt::Display for Verdict {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Offender {
     /// The node, color or dye.
-    pub place: Place,
+    pub place: Location,
     /// The wavelength, nm, where the value belongs to one.
     pub wavelength_nm: Option<f64>,
     /// The value.
@@ -100,7 +100,7 @@ pub struct Offender {
 
 /// What was checked.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Place {
+pub enum Location {
     /// A node.
     Node {
         /// Blue, green and red index.
@@ -120,7 +120,7 @@ pub enum Place {
     },
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for Location {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Node { node: [blue, green, red], rgb: LinearRgb([r, g, b]) } => {
@@ -149,9 +149,9 @@ impl serde::Serialize for Offender {
         use serde::ser::SerializeStruct as _;
 
         let (node, rgb, dye) = match &self.place {
-            Place::Node { node, rgb } => (Some(node), Some(rgb.0), None),
-            Place::Point { rgb } => (None, Some(rgb.0), None),
-            Place::Dye { name } => (None, None, Some(name)),
+            Location::Node { node, rgb } => (Some(node), Some(rgb.0), None),
+            Location::Point { rgb } => (None, Some(rgb.0), None),
+            Location::Dye { name } => (None, None, Some(name)),
         };
         let mut offender = serializer.serialize_struct("Offender", 5)?;
         offender.serialize_field("found", &self.found)?;

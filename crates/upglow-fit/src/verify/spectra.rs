@@ -16,15 +16,15 @@ pub(super) type Samples = [f64; FINE];
 pub(super) struct Sampler<'m> {
     model: &'m Model,
     /// Sums over 1 nm.
-    pub(super) fine: Sums,
+    pub(super) fine: StridedSums,
     /// Sums over 5 nm.
-    pub(super) fit: Sums,
+    pub(super) fit: StridedSums,
     pub(super) wavelengths_nm: Box<Samples>,
     dyes: Vec<SampledDye>,
 }
 
 /// A colorimetry and which samples of [`Grid::FINE`] it adds up.
-pub(super) struct Sums {
+pub(super) struct StridedSums {
     pub(super) colorimetry: Colorimetry,
     stride: usize,
 }
@@ -41,8 +41,8 @@ struct SampledDye {
 /// One color by each kind of sum.
 #[derive(Clone, Copy, Debug, Default)]
 struct Stimulus {
-    fine: [f64; 3],
-    fit: [f64; 3],
+    fine: Xyz,
+    fit: Xyz,
 }
 
 /// What a mixture does with light, at every wavelength, and the colors that it emits.
@@ -87,15 +87,15 @@ fn sampled(values: impl IntoIterator<Item = f64>) -> Box<Samples> {
     samples
 }
 
-impl Sums {
+impl StridedSums {
     fn new(contract: &Contract, grid: Grid) -> Self {
         let stride = (grid.step_nm() / Grid::FINE.step_nm()) as usize;
         Self { colorimetry: contract.on(grid), stride }
     }
 
     /// The color of light reflected in these shares.
-    fn reflected(&self, share: &Samples) -> [f64; 3] {
-        self.colorimetry.xyz_from_reflectance(share.iter().step_by(self.stride).copied()).0
+    fn reflected(&self, share: &Samples) -> Xyz {
+        self.colorimetry.xyz_from_reflectance(share.iter().step_by(self.stride).copied())
     }
 
     /// Energy absorbed in these shares.
@@ -105,20 +105,16 @@ impl Sums {
     }
 
     /// The color of one unit of energy, spread as these samples are; `unit` is their sum.
-    fn emission(&self, samples: &[f64], unit: f64) -> [f64; 3] {
-        let mut sum = [0.0; 3];
-        let matching = self.colorimetry.matching();
-        for (e, m) in samples.iter().step_by(self.stride).zip(matching) {
-            (0..3).for_each(|k| sum[k] += e * m[k]);
-        }
-        sum.map(|v| v / unit)
+    fn emission(&self, samples: &[f64], unit: f64) -> Xyz {
+        let bands = samples.iter().step_by(self.stride).zip(self.colorimetry.matching());
+        bands.map(|(e, m)| *e * Xyz(*m)).sum::<Xyz>() / unit
     }
 }
 
 impl SampledDye {
-    fn new(curves: &DyeCurves, fine: &Sums, fit: &Sums) -> Self {
+    fn new(curves: &DyeCurves, fine: &StridedSums, fit: &StridedSums) -> Self {
         let emission = curves.emission.values();
-        let by = |sums: &Sums| {
+        let by = |sums: &StridedSums| {
             // The sum over a coarse grid is not quite the area: a dye gives back no more than that.
             let area = emission.iter().step_by(sums.stride).sum();
             sums.emission(emission, area)
@@ -134,7 +130,8 @@ impl SampledDye {
 
 impl<'m> Sampler<'m> {
     pub(super) fn new(contract: &Contract, model: &'m Model) -> Self {
-        let (fine, fit) = (Sums::new(contract, Grid::FINE), Sums::new(contract, Grid::FIT));
+        let (fine, fit) =
+            (StridedSums::new(contract, Grid::FINE), StridedSums::new(contract, Grid::FIT));
         let dyes = match model {
             Model::Dyes(dyes) => {
                 dyes.curves().iter().map(|c| SampledDye::new(c, &fine, &fit)).collect()
@@ -163,12 +160,12 @@ impl<'m> Sampler<'m> {
 
     /// The color of sampled spectra by sums over 1 nm.
     pub(super) fn fine_color(&self, spectra: &Spectra) -> Xyz {
-        color(&self.fine, spectra, spectra.emitted.fine)
+        self.fine.reflected(&spectra.reflected) + spectra.emitted.fine
     }
 
     /// The color of sampled spectra by sums over 5 nm.
     pub(super) fn fit_color(&self, spectra: &Spectra) -> Xyz {
-        color(&self.fit, spectra, spectra.emitted.fit)
+        self.fit.reflected(&spectra.reflected) + spectra.emitted.fit
     }
 
     fn add_lobe(&self, weight: f64, lobe: &Lobe, spectra: &mut Spectra) {
@@ -180,12 +177,10 @@ impl<'m> Sampler<'m> {
             spectra.lobe_absorbed[i] = given;
             spectra.returned[i] += weight * given;
         }
-        let energies =
+        let [fine, fit] =
             [&self.fine, &self.fit].map(|sums| weight * sums.energy(&spectra.lobe_absorbed));
-        for k in 0..3 {
-            spectra.emitted.fine[k] += energies[0] * lobe.stimulus.fine[k];
-            spectra.emitted.fit[k] += energies[1] * lobe.stimulus.fit[k];
-        }
+        spectra.emitted.fine += fine * lobe.stimulus.fine;
+        spectra.emitted.fit += fit * lobe.stimulus.fit;
     }
 
     fn fill_absorbed(&self, lobe: &Lobe, absorbed: &mut Samples) {
@@ -232,7 +227,7 @@ impl<'m> Sampler<'m> {
         let second = model.partner(first);
         let (a, b) = (&self.dyes[first], &self.dyes[second]);
         let mix = |x: f64, y: f64| (1.0 - weight) * x + weight * y;
-        let mix3 = |x: [f64; 3], y: [f64; 3]| [0, 1, 2].map(|k| mix(x[k], y[k]));
+        let mix_colors = |x: Xyz, y: Xyz| (1.0 - weight) * x + weight * y;
         Lobe {
             absorber: Absorber::Dyes { first, second, weight },
             strength,
@@ -240,8 +235,8 @@ impl<'m> Sampler<'m> {
             accounting: model.options().accounting,
             mean_emission_nm: mix(a.mean_emission_nm, b.mean_emission_nm),
             stimulus: Stimulus {
-                fine: mix3(a.stimulus.fine, b.stimulus.fine),
-                fit: mix3(a.stimulus.fit, b.stimulus.fit),
+                fine: mix_colors(a.stimulus.fine, b.stimulus.fine),
+                fit: mix_colors(a.stimulus.fit, b.stimulus.fit),
             },
         }
     }
@@ -261,7 +256,7 @@ impl<'m> Sampler<'m> {
     fn bell_lobe(&self, peak_nm: f64, stokes_shift_nm: f64, strength: f64) -> Option<Lobe> {
         let Model::Analytic(model) = self.model else { return None };
         let emission = self.wavelengths_nm.map(|nm| model.emission(peak_nm, nm).0);
-        let by = |sums: &Sums| sums.emission(&emission, 1.0 / sums.stride as f64);
+        let by = |sums: &StridedSums| sums.emission(&emission, 1.0 / sums.stride as f64);
         Some(Lobe {
             absorber: Absorber::Bell { center_nm: peak_nm - stokes_shift_nm },
             strength,
@@ -271,11 +266,6 @@ impl<'m> Sampler<'m> {
             stimulus: Stimulus { fine: by(&self.fine), fit: by(&self.fit) },
         })
     }
-}
-
-fn color(sums: &Sums, spectra: &Spectra, emitted: [f64; 3]) -> Xyz {
-    let reflected = sums.reflected(&spectra.reflected);
-    Xyz([0, 1, 2].map(|k| reflected[k] + emitted[k]))
 }
 
 impl Lobe {

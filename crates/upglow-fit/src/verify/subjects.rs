@@ -6,7 +6,7 @@ use upglow::Cube;
 use upglow_color::LinearRgb;
 
 use super::VerifyOptions;
-use super::tally::Subject;
+use super::finding::Subject;
 
 /// Grays from black to white that are checked between the nodes. Fewer could miss a cell of the
 /// largest cube, which has 255 along the diagonal; more find nothing new within a cell.

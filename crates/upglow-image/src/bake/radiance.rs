@@ -1,13 +1,13 @@
 //! Color under a light.
 
 use upglow::{ColorTable, Cube};
+use upglow_color::rounding::to_single;
 use upglow_color::{Grid, Illuminant, Matrix3};
 
 use super::attributes;
 use super::maker::Maker;
 use crate::exr::attribute::{Attribute, Attributes};
 use crate::exr::writer::Compression;
-use crate::rounding::to_single;
 
 /// Linear RGB, in the cube's space, of the blend of each texel under a light.
 #[derive(Debug)]

@@ -1,10 +1,9 @@
 //! Values that no cube holds, and colors that no material shows, made into ones that can be baked.
 
 use rayon::prelude::*;
+use upglow_color::rounding::to_single;
 use upglow_color::{LinearRgb, StandingKind, choices};
 use upglow_fit::StandingTable;
-
-use crate::rounding::to_single;
 
 /// What to do with texels that cannot be baked as they are.
 ///

@@ -1,6 +1,7 @@
 //! Reflectance in bands, and re-radiation between them.
 
 use upglow::{Bispectral, Cube, Interpolation, Model};
+use upglow_color::rounding::to_single;
 use upglow_color::{Grid, LinearRgb};
 
 use super::attributes;
@@ -8,7 +9,6 @@ use super::maker::Maker;
 use super::radiance::{NAMES, RadianceMaker};
 use crate::exr::attribute::Attributes;
 use crate::exr::writer::Compression;
-use crate::rounding::to_single;
 use crate::spectral::channel::{BISPECTRAL_UNIT, BispectralUnit, SpectralChannel, rising_pairs};
 
 /// The blend of each texel, one channel for each band and each pair of bands that rises.

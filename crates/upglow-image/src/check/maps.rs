@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use rayon::prelude::*;
+use upglow_color::rounding::to_single;
 use upglow_color::{LinearRgb, StandingKind};
 use upglow_fit::Estimate;
 
@@ -11,7 +12,6 @@ use super::findings::Findings;
 use super::limits::Limits;
 use super::palette::Heat;
 use super::raster::Raster;
-use crate::rounding::to_single;
 
 /// Blocks of a picture, each a pixel of the maps.
 #[derive(Debug)]

@@ -3,8 +3,7 @@
 use std::collections::BTreeMap;
 
 use upglow_color::RgbSpace;
-
-use crate::rounding::to_single;
+use upglow_color::rounding::to_single;
 
 /// The attributes of one image, by name; a file states each once, sorted.
 pub(crate) type Attributes = BTreeMap<String, Attribute>;

@@ -1,9 +1,9 @@
 //! Rows of a picture.
 
 use rayon::prelude::*;
+use upglow_color::rounding::to_single;
 
 use super::encoding::Encoding;
-use crate::rounding::to_single;
 
 /// Some whole rows of a picture.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use rayon::prelude::*;
+use upglow_color::rounding::to_single;
 use upglow_color::{Contract, Grid, Matrix3, RgbSpace};
 use upglow_fit::{Progress, Stopped, Watch};
 
@@ -11,7 +12,6 @@ use super::band::Band;
 use super::encoding::Encoding;
 use super::error::PictureError;
 use super::source::Alpha;
-use crate::rounding::to_single;
 
 /// What is taken for granted of files that do not say it themselves.
 #[derive(Clone, Debug, Default, PartialEq)]

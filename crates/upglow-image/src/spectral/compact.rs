@@ -6,6 +6,7 @@ mod dye;
 mod stated;
 
 use upglow::{Accounting, Bispectral, DyeModel, Fluorescence, Mixing, Mixture};
+use upglow_color::rounding::to_single;
 use upglow_color::{Grid, choices};
 
 use self::dye::{CompactDye, dye_attribute};
@@ -13,7 +14,6 @@ use self::stated::{Stated, wrong};
 use super::channel::SpectralChannel;
 use super::error::FormError;
 use crate::exr::attribute::Attributes;
-use crate::rounding::to_single;
 
 /// What the maps beside the reflectances hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,7 +5,7 @@ use upglow::{Edge, Sigmoid};
 /// Middle of the scaled wavelength t = (λ − 565) / 100: the visible range is −2..2.
 const CENTER_NM: f64 = 565.0;
 /// Length of one unit of t, nm.
-const UNIT_NM: f64 = 100.0;
+pub(crate) const UNIT_NM: f64 = 100.0;
 
 /// Of a shape's two steepest points the one nearer to this is its coordinate, nm.
 pub(crate) const MIDDLE_NM: f64 = 540.0;

@@ -3,7 +3,7 @@
 use upglow::Cube;
 use upglow_color::LinearRgb;
 
-use super::{Offender, Place};
+use super::{Location, Offender};
 
 /// One of the colors that are checked.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,12 +24,12 @@ impl Subject {
         }
     }
 
-    fn place(self, cube: &Cube) -> Place {
+    fn place(self, cube: &Cube) -> Location {
         match self {
             Self::Node(index) => {
-                Place::Node { node: cube.coordinates(index), rgb: cube.node_rgb(index) }
+                Location::Node { node: cube.coordinates(index), rgb: cube.node_rgb(index) }
             }
-            Self::Gray(rgb) | Self::Point(rgb) => Place::Point { rgb },
+            Self::Gray(rgb) | Self::Point(rgb) => Location::Point { rgb },
         }
     }
 }
@@ -51,13 +51,13 @@ impl Finding {
 
 /// What one law found so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Tally {
+pub(super) struct Outcome {
     pub(super) checked: usize,
     pub(super) violations: usize,
     pub(super) worst: Option<Finding>,
 }
 
-impl Tally {
+impl Outcome {
     /// Takes note of a value that must not exceed `most`. What is no number exceeds everything.
     pub(super) fn see(&mut self, mut finding: Finding, most: f64) {
         if finding.value.is_nan() {
@@ -111,8 +111,8 @@ mod tests {
 
     #[test]
     fn pieces_add_up_and_the_first_of_equals_stays() {
-        let mut whole = Tally::default();
-        let mut parts = [Tally::default(); 2];
+        let mut whole = Outcome::default();
+        let mut parts = [Outcome::default(); 2];
         for (i, value) in [0.5, 2.0, 1.0, 2.0].into_iter().enumerate() {
             whole.see(finding(value, i), 1.0);
             parts[i / 2].see(finding(value, i), 1.0);
@@ -126,9 +126,9 @@ mod tests {
 
     #[test]
     fn what_is_no_number_breaks_every_law() {
-        let mut tally = Tally::default();
-        tally.see(finding(f64::NAN, 0), f64::MAX);
-        assert_eq!(tally.violations, 1);
+        let mut outcome = Outcome::default();
+        outcome.see(finding(f64::NAN, 0), f64::MAX);
+        assert_eq!(outcome.violations, 1);
         assert!(worse(f64::NAN, 1.0).is_nan() && worse(1.0, f64::NAN).is_nan());
         assert_eq!(greatest([1.0, f64::NAN, 3.0].into_iter()), (f64::INFINITY, 1));
     }

@@ -16,7 +16,7 @@ const COARSEST: usize = 4;
 
 /// The nodes that one step of refinement adds to a lattice.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Level {
+pub(crate) struct Refinement {
     lattice: Lattice,
     /// Distance of the nodes after this step; half of what it was before.
     stride: usize,
@@ -55,11 +55,11 @@ impl Lattice {
         })
     }
 
-    /// The coarsest level and each that refines it; together they hold every node once.
-    pub(crate) fn levels(self) -> impl Iterator<Item = Level> {
+    /// The coarsest nodes and each step that refines them; together they hold every node once.
+    pub(crate) fn refinements(self) -> impl Iterator<Item = Refinement> {
         let halved = |&stride: &usize| (stride > 1).then_some(stride / 2);
         std::iter::successors(Some(COARSEST), halved)
-            .map(move |stride| Level { lattice: self, stride })
+            .map(move |stride| Refinement { lattice: self, stride })
     }
 
     /// Numbers of a node along red, green, blue.
@@ -77,16 +77,16 @@ impl Lattice {
     }
 }
 
-impl Level {
-    /// The level's nodes in their order.
+impl Refinement {
+    /// The nodes of this step in their order.
     pub(crate) fn nodes(self) -> Vec<usize> {
         let Self { lattice, stride } = self;
         let is_new = |&i: &usize| self.is_coarsest() || !lattice.is_on(i, 2 * stride);
         (0..lattice.len()).filter(|&i| lattice.is_on(i, stride)).filter(is_new).collect()
     }
 
-    /// The nodes of the coarser levels at the corners of the cell that holds a node, up to eight;
-    /// none for the coarsest level.
+    /// The nodes of earlier steps at the corners of the cell that holds a node, up to eight;
+    /// none for the coarsest.
     pub(crate) fn around(self, index: usize) -> impl Iterator<Item = usize> {
         let Self { lattice, stride } = self;
         let places = lattice.places(index);
@@ -116,15 +116,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_levels_hold_every_node_once_and_build_on_earlier_ones() {
+    fn the_steps_hold_every_node_once_and_build_on_earlier_ones() {
         for resolution in [2, 5, 8, 9] {
             let lattice = Lattice::try_new(resolution).expect("it is in range");
             let mut is_known = vec![false; lattice.len()];
-            for level in lattice.levels() {
-                let nodes = level.nodes();
+            for step in lattice.refinements() {
+                let nodes = step.nodes();
                 for &node in &nodes {
-                    assert!(level.around(node).all(|corner| is_known[corner]), "{node}");
-                    assert_eq!(level.around(node).next().is_none(), level.is_coarsest(), "{node}");
+                    assert!(step.around(node).all(|corner| is_known[corner]), "{node}");
+                    assert_eq!(step.around(node).next().is_none(), step.is_coarsest(), "{node}");
                 }
                 for node in nodes {
                     assert!(!std::mem::replace(&mut is_known[node], true), "{node}");
@@ -137,7 +137,7 @@ mod tests {
     #[test]
     fn a_node_in_the_middle_of_a_cell_has_its_eight_corners_around_it() {
         let lattice = Lattice::try_new(9).expect("it is in range");
-        let finest = lattice.levels().last().expect("there are levels");
+        let finest = lattice.refinements().last().expect("there are steps");
         let around: Vec<[usize; 3]> =
             finest.around(lattice.index([1, 3, 5])).map(|i| lattice.places(i)).collect();
         assert_eq!(around.len(), 8);

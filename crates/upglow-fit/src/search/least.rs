@@ -1,8 +1,8 @@
 //! The least fluorescence that still shows a color.
 
-use crate::job::Solve;
+use super::job::Solve;
+use crate::problem::solver::{Residuals, SolverOptions, Summary, solve};
 use crate::problem::{CONCENTRATION, LeastProblem};
-use crate::solver::{Residuals, SolverOptions, Summary, solve};
 
 /// What a concentration of 1 counts in the search for the least one, in units of the metric.
 /// Larger leaves the color earlier, smaller takes more rounds.

@@ -1,18 +1,19 @@
-//! Numbers with fewer digits.
+//! Numbers with fewer digits, for the crates of this workspace.
 
 /// The nearest number in single precision.
 #[expect(clippy::cast_possible_truncation, reason = "rounding is what it is for")]
 #[inline(always)]
-pub(crate) fn to_single(value: f64) -> f32 {
+pub fn to_single(value: f64) -> f32 {
     value as f32
 }
 
-/// The whole part; 0 for what is negative or no number.
+/// The whole part; 0 for what is negative or not a number.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
     reason = "the fraction is meant to go, and callers bound the rest"
 )]
-pub(crate) fn whole(position: f64) -> usize {
+#[inline(always)]
+pub fn whole(position: f64) -> usize {
     position as usize
 }

@@ -3,13 +3,13 @@
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU32, Ordering};
 
+use upglow_color::rounding::{to_single, whole};
 use upglow_color::{ColorSolid, LinearRgb, Metric, StandingKind, Xyz};
 
 use super::reach::{Reach, Side, parted};
-use crate::rounding::to_single;
 
 #[derive(Debug)]
-pub(super) struct Lattice {
+pub(super) struct BoxLattice {
     origin: [f64; 3],
     /// From one corner to the next, of either sign.
     step: [f64; 3],
@@ -28,7 +28,7 @@ pub(super) struct Lattice {
 pub(super) enum Cell {
     Settled(StandingKind),
     /// Some of its parts may be settled.
-    Divided(Box<Lattice>),
+    Divided(Box<BoxLattice>),
     /// Each color needs its own search, or the box is worth dividing further.
     Mixed(Box<Mixed>),
 }
@@ -37,7 +37,7 @@ pub(super) enum Cell {
 #[derive(Debug, Default)]
 pub(super) struct Mixed {
     asked: AtomicU32,
-    parts: OnceLock<Lattice>,
+    parts: OnceLock<BoxLattice>,
 }
 
 /// What is known at a corner of boxes.
@@ -79,7 +79,7 @@ const OFTEN: u32 = 64;
 /// No box is divided deeper, to 1/8192: there is always a color on the surface itself.
 const DEEPEST: u32 = 4;
 
-impl Lattice {
+impl BoxLattice {
     /// The cube from black to ±2^`exponent`; the bits of `octant` are the signs, red the lowest.
     pub(super) fn around_black(exponent: i64, octant: usize) -> Self {
         let side = f64::from(i32::try_from(exponent).expect("it is a few bits")).exp2();
@@ -102,7 +102,7 @@ impl Lattice {
         self.cells[index].get_or_init(|| self.settle(at, reach))
     }
 
-    /// Distance and ΔE00 between the corners of a box that [`Lattice::cell`] was asked for.
+    /// Distance and ΔE00 between the corners of a box that [`BoxLattice::cell`] was asked for.
     ///
     /// The distance from a convex body is a convex function, so the distance is not understated.
     pub(super) fn interpolate(&self, rgb: LinearRgb, of: impl Fn(&Corner) -> Offset) -> [f64; 2] {
@@ -236,13 +236,6 @@ fn side_of(solid: &ColorSolid, corners: &[Offset; 8], points: &[Xyz; 8]) -> Side
 
 fn box_corners(at: [usize; 3]) -> impl Iterator<Item = [usize; 3]> {
     (0..8_usize).map(move |corner| [0, 1, 2].map(|k| at[k] + (corner >> k & 1)))
-}
-
-/// The whole part of a place in a lattice, which is not negative but for rounding.
-#[expect(clippy::cast_possible_truncation, reason = "the fraction is meant to go")]
-#[expect(clippy::cast_sign_loss, reason = "rounding below 0 is 0")]
-fn whole(position: f64) -> usize {
-    position as usize
 }
 
 /// Single precision, not below the value.

@@ -3,14 +3,14 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, dispatch, f32x8};
 use upglow::{AnalyticModel, Model, ModelOnGrid};
+use upglow_color::rounding::to_single;
 
-use crate::parabola::{Parabola, scaled};
-use crate::rounding::to_single;
+use crate::problem::parabola::{Parabola, scaled};
 
 /// Samples of one curve at the wavelengths that the observer sees, padded to whole vectors.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
-pub(super) struct Lanes([f32; LANES]);
+pub(super) struct SingleLanes([f32; LANES]);
 
 /// 360, 365 … 830 nm are 95 samples of the 5 nm grid.
 const LANES: usize = 96;
@@ -25,19 +25,19 @@ pub(super) const CHART_NM: [f64; 3] = [455.0, 545.0, 610.0];
 /// An absorption, by itself and as the observer sees it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Absorber {
-    curve: Lanes,
-    weighted: [Lanes; 3],
+    curve: SingleLanes,
+    weighted: [SingleLanes; 3],
 }
 
 /// Curves and weights of the sums.
 #[derive(Clone, Debug)]
-pub(super) struct Sums {
-    level: Level,
-    t: Lanes,
-    weights: [Lanes; 3],
+pub(super) struct SingleSums {
+    simd_level: Level,
+    t: SingleLanes,
+    weights: [SingleLanes; 3],
     /// The weights times the parabola that is 1 at one chart wavelength and 0 at the others,
     /// `[chart wavelength][X Y Z]`.
-    chart_weights: [[Lanes; 3]; 3],
+    chart_weights: [[SingleLanes; 3]; 3],
     /// Those parabolas, `[chart wavelength][coefficient]`.
     chart: [Parabola; 3],
     /// Dyes in ring order.
@@ -57,7 +57,7 @@ pub(super) struct Shown {
     pub(super) seen: [[f32; 3]; 2],
 }
 
-impl Lanes {
+impl SingleLanes {
     const ZERO: Self = Self([0.0; LANES]);
 
     fn from_fn(f: impl Fn(usize) -> f32) -> Self {
@@ -70,13 +70,15 @@ impl Lanes {
     }
 }
 
-impl Sums {
+impl SingleSums {
     pub(super) fn new(model: &ModelOnGrid) -> Self {
         let all = model.colorimetry().weights();
         let first = all.iter().position(|w| w.iter().any(|v| *v != 0.0)).unwrap_or(0);
         assert!(all.len() - first <= LANES, "fits run on the 5 nm grid");
         let visible = |of: &dyn Fn(usize) -> f64| {
-            Lanes::from_fn(|i| if first + i < all.len() { to_single(of(first + i)) } else { 0.0 })
+            SingleLanes::from_fn(
+                |i| if first + i < all.len() { to_single(of(first + i)) } else { 0.0 },
+            )
         };
         let t = |i: usize| scaled(model.wavelengths_nm()[i]);
         let weights = [0, 1, 2].map(|k| visible(&|i| all[i][k]));
@@ -84,7 +86,7 @@ impl Sums {
         let chart_weights = chart.map(|[q0, q1, q2]| {
             [0, 1, 2].map(|k| visible(&|i| all[i][k] * (q0 + t(i) * (q1 + t(i) * q2))))
         });
-        let absorber = |curve: Lanes| Absorber::new(curve, &weights);
+        let absorber = |curve: SingleLanes| Absorber::new(curve, &weights);
         let dyes = match model.model() {
             Model::Dyes(dyes) => (0..dyes.curves().len())
                 .map(|dye| absorber(visible(&|i| model.dye_absorption(dye)[i])))
@@ -96,13 +98,13 @@ impl Sums {
             _ => None,
         };
         Self {
-            level: Level::new(),
+            simd_level: Level::new(),
             t: visible(&t),
             weights,
             chart_weights,
             chart,
             dyes,
-            clear: absorber(Lanes::ZERO),
+            clear: absorber(SingleLanes::ZERO),
             bells,
         }
     }
@@ -134,7 +136,7 @@ impl Sums {
     /// its derivatives by them.
     pub(super) fn reflect_chart(&self, parabola: &Parabola) -> Shown {
         let parabola = single_parabola(parabola);
-        dispatch!(self.level, simd => simd.vectorize(
+        dispatch!(self.simd_level, simd => simd.vectorize(
             #[inline(always)]
             || self.reflect_chart_in_vectors(simd, parabola),
         ))
@@ -175,7 +177,7 @@ impl Sums {
     ) -> [f32; 3] {
         let parabola = single_parabola(parabola);
         let shares = [to_single(shares[0]), to_single(shares[1])];
-        dispatch!(self.level, simd => simd.vectorize(
+        dispatch!(self.simd_level, simd => simd.vectorize(
             #[inline(always)]
             || self.color_in_vectors(simd, parabola, absorbers, shares),
         ))
@@ -218,7 +220,7 @@ impl Sums {
     ) -> Shown {
         let (center, parabola) = (to_single(center), single_parabola(parabola));
         let shares = [to_single(shares[0]), to_single(shares[1])];
-        dispatch!(self.level, simd => simd.vectorize(
+        dispatch!(self.simd_level, simd => simd.vectorize(
             #[inline(always)]
             || self.reflect_in_vectors(simd, center, parabola, absorbers, shares),
         ))
@@ -280,10 +282,10 @@ impl Sums {
     pub(super) fn bell_absorbers(&self, center_nm: f64) -> [Absorber; 2] {
         let Some(bells) = &self.bells else { return [self.clear; 2] };
         let (center_nm, step_nm) = (to_single(center_nm), bells.absorption_step_nm);
-        dispatch!(self.level, simd => simd.vectorize(
+        dispatch!(self.simd_level, simd => simd.vectorize(
             #[inline(always)]
             || {
-                let (mut curve, mut by_center) = (Lanes::ZERO, Lanes::ZERO);
+                let (mut curve, mut by_center) = (SingleLanes::ZERO, SingleLanes::ZERO);
                 for i in 0..LANES {
                     let (b, slope) = bell((bells.visible_nm.0[i] - center_nm) / step_nm);
                     curve.0[i] = 1.5 * b;
@@ -297,9 +299,9 @@ impl Sums {
 
 impl Absorber {
     #[inline(always)]
-    fn new(curve: Lanes, weights: &[Lanes; 3]) -> Self {
+    fn new(curve: SingleLanes, weights: &[SingleLanes; 3]) -> Self {
         let weighted = weights.each_ref().map(|w| {
-            let mut weighted = Lanes::ZERO;
+            let mut weighted = SingleLanes::ZERO;
             for i in 0..LANES {
                 weighted.0[i] = curve.0[i] * w.0[i];
             }
@@ -312,7 +314,7 @@ impl Absorber {
 /// The bells of the analytic model.
 #[derive(Clone, Debug)]
 pub(super) struct Bells {
-    visible_nm: Lanes,
+    visible_nm: SingleLanes,
     absorption_step_nm: f32,
 }
 
@@ -323,7 +325,9 @@ impl Bells {
         let share = bells.absorption_fwhm_nm() / bells.emission_fwhm_nm();
         let nm = model.wavelengths_nm();
         Self {
-            visible_nm: Lanes::from_fn(|i| nm.get(first + i).map_or(0.0, |&nm| to_single(nm))),
+            visible_nm: SingleLanes::from_fn(|i| {
+                nm.get(first + i).map_or(0.0, |&nm| to_single(nm))
+            }),
             absorption_step_nm: to_single(emission_step_nm * share),
         }
     }
@@ -396,8 +400,8 @@ mod tests {
 
     #[test]
     fn the_bits_are_the_same_with_and_without_wide_vectors() {
-        let sums = Sums::new(&dyes());
-        let plain = Sums { level: Level::baseline(), ..sums.clone() };
+        let sums = SingleSums::new(&dyes());
+        let plain = SingleSums { simd_level: Level::baseline(), ..sums.clone() };
         for (numbers, shares) in MATERIALS {
             let colors = [&sums, &plain].map(|sums| {
                 let absorbers = [sums.dye(2), sums.dye(3)];
@@ -414,7 +418,7 @@ mod tests {
     fn a_color_is_the_same_without_its_derivatives() {
         // Single precision of a sum of 95 numbers that adds up to 1.
         const SINGLE: f32 = 1e-6;
-        let sums = Sums::new(&dyes());
+        let sums = SingleSums::new(&dyes());
         for (numbers, shares) in MATERIALS {
             let (parabola, absorbers) = (parabola(numbers), [sums.dye(2), sums.dye(3)]);
             let color = sums.color(&parabola, absorbers, shares);
@@ -430,7 +434,7 @@ mod tests {
         // Single precision of numbers near 10 under the root.
         const SINGLE: f64 = 2e-6;
         let model = dyes();
-        let sums = Sums::new(&model);
+        let sums = SingleSums::new(&model);
         for (numbers, [a, b]) in MATERIALS {
             let [e, level, slope_per_nm] = numbers;
             let edge = Edge { edge_nm: 565.0 + 100.0 * e, level, slope_per_nm };
@@ -458,7 +462,7 @@ mod tests {
     fn bells_are_those_of_the_model() {
         let analytic = AnalyticModel::default();
         let contract = Contract::default().on(Grid::FIT);
-        let sums = Sums::new(&ModelOnGrid::new(&Model::Analytic(analytic), &contract));
+        let sums = SingleSums::new(&ModelOnGrid::new(&Model::Analytic(analytic), &contract));
         let [absorber, by_center] = sums.bell_absorbers(480.3);
         for i in 0..95 {
             let nm = f64::from(sums.bells.as_ref().unwrap().visible_nm.0[i]);

@@ -3,16 +3,16 @@
 use upglow::{AnalyticModel, DyeModel, Edge, Fluorescence, Model, Sigmoid};
 use upglow_color::{Goal, Metric};
 
-use crate::parabola::MIDDLE_NM;
-use crate::problem::{BELL_UNIT_NM, BellProblem, DyeProblem, PassiveProblem, Shape};
-use crate::solver::{Residuals, Summary};
-use crate::starts::Start;
-use crate::{Fit, Fitter};
+use super::context::Context;
+use crate::fit::{Fit, Start};
+use crate::problem::parabola::{MIDDLE_NM, UNIT_NM};
+use crate::problem::solver::{Residuals, Summary};
+use crate::problem::{BellProblem, DyeProblem, PassiveProblem, Shape};
 
-/// A color, and the fitter that looks for its material.
+/// A color, and what the search for its material needs.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Job<'f> {
-    pub(crate) fitter: &'f Fitter,
+pub(crate) struct Job<'c> {
+    pub(crate) context: &'c Context,
     pub(crate) goal: Goal,
 }
 
@@ -22,10 +22,10 @@ const GRAY: f64 = 1e-9;
 impl Job<'_> {
     /// A flat reflectance where the color is a gray no brighter than white.
     pub(crate) fn gray(&self) -> Option<Fit> {
-        let white = self.fitter.model.colorimetry().white().0;
-        let color = self.goal.xyz().0;
-        let value = color[1] / white[1];
-        let off = (0..3).map(|k| (color[k] - value * white[k]).abs()).fold(0.0, f64::max);
+        let white = self.context.model.colorimetry().white();
+        let color = self.goal.xyz();
+        let value = color.0[1] / white.0[1];
+        let off = (color - value * white).0.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
         let value = if (value - 1.0).abs() < GRAY { 1.0 } else { value };
         if off > GRAY || !(0.0..=1.0).contains(&value) {
             return None;
@@ -39,26 +39,26 @@ impl Job<'_> {
             c if c > 0.0 => fluorescence,
             _ => Fluorescence::None,
         };
-        let color = self.fitter.color(reflectance, fluorescence);
+        let color = self.context.color(reflectance, fluorescence);
         let de2000 = self.goal.under(Metric::De2000).distance(color);
         let distance = match self.goal.metric() {
             Metric::De2000 => de2000,
             _ => self.goal.distance(color),
         };
-        let lab = self.fitter.model.colorimetry().lab_from_xyz(color);
+        let lab = self.context.model.colorimetry().lab_from_xyz(color);
         Fit { reflectance, fluorescence, distance, de2000, lab }
     }
 
     /// The coordinates in which the slope limit is a bound.
     pub(crate) fn edge_shape(&self) -> Shape {
-        Shape::Edge { slope_limit_per_nm: self.fitter.slope_limit_per_nm }
+        Shape::Edge { slope_limit_per_nm: self.context.slope_limit_per_nm }
     }
 
     /// Looks for a material like `start` in the coordinates `shape`, by `solve`.
     pub(crate) fn follow(&self, start: Start, shape: Shape, solve: &impl Solve) -> Fit {
         let numbers = shape.numbers(start.reflectance);
         let [s0, s1, s2] = numbers;
-        match (start.fluorescence, self.fitter.model.model()) {
+        match (start.fluorescence, self.context.model.model()) {
             (Fluorescence::Dyes { first, weight, concentration }, Model::Dyes(dyes)) => {
                 let problem = self.dye_problem(dyes, first, shape);
                 let x = [s0, s1, s2, concentration, weight];
@@ -70,14 +70,14 @@ impl Job<'_> {
                 Fluorescence::Analytic { emission_peak_nm, stokes_shift_nm, concentration },
                 Model::Analytic(bells),
             ) => {
-                let [peak, shift] = [emission_peak_nm, stokes_shift_nm].map(|v| v / BELL_UNIT_NM);
+                let [peak, shift] = [emission_peak_nm, stokes_shift_nm].map(|v| v / UNIT_NM);
                 let problem = self.bell_problem(bells, shape);
                 let x = [s0, s1, s2, concentration, peak, shift];
                 let [s0, s1, s2, concentration, peak, shift] =
                     self.counted(solve.solve(&problem, x));
                 let fluorescence = Fluorescence::Analytic {
-                    emission_peak_nm: peak * BELL_UNIT_NM,
-                    stokes_shift_nm: shift * BELL_UNIT_NM,
+                    emission_peak_nm: peak * UNIT_NM,
+                    stokes_shift_nm: shift * UNIT_NM,
                     concentration,
                 };
                 self.judge(shape.edge([s0, s1, s2]), fluorescence)
@@ -91,21 +91,21 @@ impl Job<'_> {
 
     /// What the solver found, with its evaluations added to the fitter's.
     fn counted<const N: usize>(&self, found: Summary<N>) -> [f64; N] {
-        self.fitter.count(found.evaluations);
+        self.context.count(found.evaluations);
         found.x
     }
 
     pub(crate) fn passive_problem(&self, shape: Shape) -> PassiveProblem<'_> {
-        PassiveProblem { sums: &self.fitter.sums, goal: self.goal, shape }
+        PassiveProblem { sums: &self.context.sums, goal: self.goal, shape }
     }
 
     fn dye_problem<'a>(&'a self, dyes: &'a DyeModel, first: usize, shape: Shape) -> DyeProblem<'a> {
-        let lanes = &self.fitter.dye_lanes;
+        let lanes = &self.context.dye_lanes;
         DyeProblem {
-            sums: &self.fitter.sums,
+            sums: &self.context.sums,
             goal: self.goal,
             shape,
-            model: &self.fitter.model,
+            model: &self.context.model,
             dyes,
             first,
             absorption: [&lanes[first], &lanes[dyes.partner(first)]],
@@ -113,8 +113,8 @@ impl Job<'_> {
     }
 
     fn bell_problem<'a>(&'a self, bells: &'a AnalyticModel, shape: Shape) -> BellProblem<'a> {
-        let model = &self.fitter.model;
-        BellProblem { sums: &self.fitter.sums, goal: self.goal, shape, model, bells }
+        let model = &self.context.model;
+        BellProblem { sums: &self.context.sums, goal: self.goal, shape, model, bells }
     }
 }
 

@@ -3,8 +3,9 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, dispatch, f64x4};
 use upglow::ModelOnGrid;
+use upglow_color::Xyz;
 
-use crate::parabola::{Parabola, scaled};
+use super::parabola::{Parabola, scaled};
 
 /// Samples of one curve at the wavelengths that the observer sees, padded to whole vectors.
 pub(crate) type Lanes = [f64; LANES];
@@ -22,18 +23,18 @@ pub(crate) struct Sums {
     weights: [Lanes; 3],
     wavelengths_nm: Lanes,
     first: usize,
-    level: Level,
+    simd_level: Level,
 }
 
 /// What a reflectance shows through an absorber, and derivatives.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Reflected<const K: usize> {
     /// ∫ w·(1 − absorbed)·r.
-    pub(crate) color: [f64; 3],
-    /// Derivatives of the color by the parabola's coefficients, `[coefficient][X Y Z]`.
-    pub(crate) by_parabola: [[f64; 3]; 3],
+    pub(crate) color: Xyz,
+    /// Derivatives of the color by the parabola's coefficients, `[coefficient]`.
+    pub(crate) by_parabola: [Xyz; 3],
     /// ∫ w·other·r for each of the other curves.
-    pub(crate) seen_by: [[f64; 3]; K],
+    pub(crate) seen_by: [Xyz; K],
 }
 
 impl Sums {
@@ -51,7 +52,7 @@ impl Sums {
             weights: [[0.0; LANES]; 3],
             wavelengths_nm: [0.0; LANES],
             first,
-            level: Level::new(),
+            simd_level: Level::new(),
         };
         assert!(weights.len() - first <= LANES, "fits run on the 5 nm grid");
         for (i, (w, &nm)) in weights.iter().zip(model.wavelengths_nm()).skip(first).enumerate() {
@@ -87,8 +88,8 @@ impl Sums {
     }
 
     /// ∫ w·curve.
-    pub(crate) fn integrate(&self, curve: impl Fn(usize) -> f64) -> [f64; 3] {
-        self.weights.each_ref().map(|w| (0..LANES).map(|i| w[i] * curve(i)).sum())
+    pub(crate) fn integrate(&self, curve: impl Fn(usize) -> f64) -> Xyz {
+        Xyz(self.weights.each_ref().map(|w| (0..LANES).map(|i| w[i] * curve(i)).sum()))
     }
 
     /// The color of a reflectance behind an absorber that takes `absorbed` at each wavelength, and
@@ -99,7 +100,7 @@ impl Sums {
         absorbed: &Lanes,
         others: [&Lanes; K],
     ) -> Reflected<K> {
-        dispatch!(self.level, simd => simd.vectorize(
+        dispatch!(self.simd_level, simd => simd.vectorize(
             #[inline(always)]
             || self.reflect_in_vectors(simd, parabola, absorbed, others),
         ))
@@ -145,9 +146,9 @@ impl Sums {
             }
         }
         Reflected {
-            color: color.map(total),
-            by_parabola: by.map(|by| by.map(total)),
-            seen_by: seen.map(|seen| seen.map(total)),
+            color: Xyz(color.map(total)),
+            by_parabola: by.map(|by| Xyz(by.map(total))),
+            seen_by: seen.map(|seen| Xyz(seen.map(total))),
         }
     }
 }

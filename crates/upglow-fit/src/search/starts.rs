@@ -4,26 +4,13 @@ use std::ops::Range;
 
 use fearless_simd::{Level, Simd, dispatch};
 use upglow::{AnalyticModel, DyeModel, Edge, Fluorescence, Model, ModelOnGrid};
+use upglow_color::rounding::to_single;
 use upglow_color::{Goal, Lab, Xyz, ciede2000, ciede2000_residuals, lab_from_xyz};
 
-use crate::Fit;
-use crate::parabola::MIDDLE_NM;
+use crate::fit::Start;
 use crate::problem::Shape;
-use crate::rounding::to_single;
-use crate::sums::{Lanes, Sums};
-
-/// One material to start from.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Start {
-    pub(crate) reflectance: Edge,
-    pub(crate) fluorescence: Fluorescence,
-}
-
-impl From<Fit> for Start {
-    fn from(fit: Fit) -> Self {
-        Self { reflectance: fit.reflectance, fluorescence: fit.fluorescence }
-    }
-}
+use crate::problem::parabola::MIDDLE_NM;
+use crate::problem::sums::{Lanes, Sums};
 
 /// The start materials and their colors, sorted into buckets of like fluorescence, or of like shape
 /// where nothing fluoresces.
@@ -33,7 +20,7 @@ pub(crate) struct StartTable {
     entries: Vec<Entry>,
     /// CIELAB of each entry, `[L a b][entry]`.
     lab: [Vec<f32>; 3],
-    level: Level,
+    simd_level: Level,
     /// First entry of each bucket, and the end; all multiples of [`WIDTH`].
     buckets: Vec<usize>,
 }
@@ -68,25 +55,31 @@ struct Variant {
     fluorescence: Fluorescence,
     /// Which curves absorb, with their shares of the light.
     absorbers: [(usize, f64); 2],
-    emitted: [f64; 3],
+    emitted: Xyz,
 }
 
 impl StartTable {
-    /// The table for one model and light.
-    pub(crate) fn new(model: &ModelOnGrid, sums: &Sums, slope_limit_per_nm: f64) -> Self {
+    /// The table for one model and light; `dye_lanes` are what its dyes absorb.
+    pub(crate) fn new(
+        model: &ModelOnGrid,
+        sums: &Sums,
+        dye_lanes: &[Lanes],
+        slope_limit_per_nm: f64,
+    ) -> Self {
         let shapes = shapes(slope_limit_per_nm);
-        let (variants, absorbers) = variants(model, sums);
+        let (variants, bells) = variants(model, sums);
+        let absorbers = if bells.is_empty() { dye_lanes } else { &bells };
         let white = model.colorimetry().white();
         let mut sorted: Vec<(usize, Entry, Lab)> = Vec::new();
         let per_kind = shapes.len().div_ceil(PASSIVE_BUCKETS);
         for (index, &shape) in (0..).zip(&shapes) {
             let r = sums.reflectance(Shape::Free.numbers(shape));
             let reflected = sums.integrate(|i| r[i]);
-            let taken: Vec<[f64; 3]> =
+            let taken: Vec<Xyz> =
                 absorbers.iter().map(|a| sums.integrate(|i| r[i] * a[i])).collect();
             for variant in &variants {
                 let color = variant.color(reflected, &taken);
-                let lab = lab_from_xyz(Xyz(color), white);
+                let lab = lab_from_xyz(color, white);
                 let fluorescence = variant.fluorescence;
                 let bucket = match fluorescence {
                     Fluorescence::None => index as usize / per_kind,
@@ -100,7 +93,7 @@ impl StartTable {
             shapes,
             entries: Vec::new(),
             lab: [Vec::new(), Vec::new(), Vec::new()],
-            level: Level::new(),
+            simd_level: Level::new(),
             buckets: vec![0],
         };
         for bucket in sorted.chunk_by(|(a, ..), (b, ..)| a == b) {
@@ -130,7 +123,7 @@ impl StartTable {
     pub(crate) fn nearest(&self, goal: &Goal) -> Vec<Start> {
         let form = Form::around(goal);
         let mut best: Vec<(f32, usize)> = Vec::with_capacity(self.buckets.len());
-        dispatch!(self.level, simd => simd.vectorize(
+        dispatch!(self.simd_level, simd => simd.vectorize(
             #[inline(always)]
             || {
                 for range in self.buckets.windows(2) {
@@ -220,16 +213,10 @@ impl Form {
 }
 
 impl Variant {
-    fn color(&self, reflected: [f64; 3], taken: &[[f64; 3]]) -> [f64; 3] {
-        [0, 1, 2].map(|k| {
-            let absorbed: f64 = self
-                .absorbers
-                .iter()
-                .filter(|(_, share)| *share > 0.0)
-                .map(|&(curve, share)| share * taken[curve][k])
-                .sum();
-            reflected[k] - absorbed + self.emitted[k]
-        })
+    fn color(&self, reflected: Xyz, taken: &[Xyz]) -> Xyz {
+        let absorbers = self.absorbers.iter().filter(|(_, share)| *share > 0.0);
+        let absorbed: Xyz = absorbers.map(|&(curve, share)| share * taken[curve]).sum();
+        reflected - absorbed + self.emitted
     }
 }
 
@@ -276,27 +263,27 @@ fn level_at(slope_per_nm: f64, signed_width_nm: f64) -> f64 {
     square.sqrt().copysign(product)
 }
 
+/// The variants, and the curves that their absorbers count where those are not dyes.
 fn variants(model: &ModelOnGrid, sums: &Sums) -> (Vec<Variant>, Vec<Lanes>) {
     match model.model() {
         Model::Reflectance => (vec![passive()], Vec::new()),
-        Model::Dyes(dyes) => dye_variants(model, dyes, sums),
+        Model::Dyes(dyes) => (dye_variants(model, dyes), Vec::new()),
         Model::Analytic(bells) => bell_variants(model, bells, sums),
     }
 }
 
 fn passive() -> Variant {
     let fluorescence = Fluorescence::None;
-    Variant { bucket: 0, fluorescence, absorbers: [(0, 0.0); 2], emitted: [0.0; 3] }
+    Variant { bucket: 0, fluorescence, absorbers: [(0, 0.0); 2], emitted: Xyz::default() }
 }
 
-fn dye_variants(model: &ModelOnGrid, dyes: &DyeModel, sums: &Sums) -> (Vec<Variant>, Vec<Lanes>) {
-    let lanes = (0..dyes.curves().len()).map(|dye| sums.lanes(model.dye_absorption(dye))).collect();
+fn dye_variants(model: &ModelOnGrid, dyes: &DyeModel) -> Vec<Variant> {
     let dense = dyes.options().optical_density.is_some();
     let concentrations = if dense { DENSE_CONCENTRATIONS } else { CONCENTRATIONS };
     let mut variants = Vec::new();
     for first in 0..dyes.pairs() {
         for weight in WEIGHTS {
-            let emitted = model.emitted_by_dyes(dyes, first, weight).color;
+            let emitted = Xyz::from(model.emitted_by_dyes(dyes, first, weight).color);
             for &concentration in concentrations {
                 let absorbers = [
                     (first, concentration * (1.0 - weight)),
@@ -306,12 +293,12 @@ fn dye_variants(model: &ModelOnGrid, dyes: &DyeModel, sums: &Sums) -> (Vec<Varia
                     bucket: 2 * first + usize::from(weight >= 0.5),
                     fluorescence: Fluorescence::Dyes { first, weight, concentration },
                     absorbers,
-                    emitted: emitted.map(|v| concentration * v),
+                    emitted: concentration * emitted,
                 });
             }
         }
     }
-    (variants, lanes)
+    variants
 }
 
 fn bell_variants(
@@ -326,6 +313,7 @@ fn bell_variants(
             let [curve, _] = sums.sample(|nm| bells.absorption(center_nm, nm));
             lanes.push(curve);
             let emitted = model.emitted_by_bells(bells, emission_peak_nm, stokes_shift_nm).color;
+            let emitted = Xyz::from(emitted);
             for &concentration in CONCENTRATIONS {
                 variants.push(Variant {
                     bucket: 2 * p + s / 2,
@@ -335,7 +323,7 @@ fn bell_variants(
                         concentration,
                     },
                     absorbers: [(lanes.len() - 1, concentration), (0, 0.0)],
-                    emitted: emitted.map(|v| concentration * v),
+                    emitted: concentration * emitted,
                 });
             }
         }

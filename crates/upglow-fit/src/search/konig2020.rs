@@ -7,13 +7,11 @@
 use upglow::{DyeModel, Edge, Fluorescence, Model, Sigmoid};
 use upglow_color::Metric;
 
-use crate::Fit;
-use crate::fitter::EXACT;
-use crate::job::{Job, Solve};
-use crate::parabola::MIDDLE_NM;
+use super::job::{Job, Solve};
+use crate::fit::{EXACT, Fit, Start};
+use crate::problem::parabola::MIDDLE_NM;
+use crate::problem::solver::{Residuals, SolverOptions, Summary, solve};
 use crate::problem::{LimitedProblem, Shape};
-use crate::solver::{Residuals, SolverOptions, Summary, solve};
-use crate::starts::Start;
 
 /// What the solver moves for a reflectance.
 #[derive(Clone, Copy, Debug)]
@@ -38,11 +36,11 @@ const STEPS: usize = 40;
 impl Job<'_> {
     /// The first material, from a gray start.
     pub(crate) fn konig2020_first(&self, parameters: Parameters) -> Fit {
-        let passive = self.konig2020_passive(parameters);
+        let passive = self.passive(parameters);
         if passive.de2000 <= EXACT {
             return passive;
         }
-        self.konig2020_variants(parameters, passive, passive)
+        self.best_variant(parameters, passive, passive)
     }
 
     /// The best of `known` and what `known` and the neighbors lead to.
@@ -54,7 +52,7 @@ impl Job<'_> {
     ) -> Fit {
         let mut best = known;
         for start in [known].iter().chain(neighbors) {
-            best = self.konig2020_variants(parameters, *start, best);
+            best = self.best_variant(parameters, *start, best);
             if best.de2000 <= EXACT {
                 break;
             }
@@ -63,9 +61,9 @@ impl Job<'_> {
     }
 
     /// Reflectance alone. CIEDE2000 has no slope to follow at gray: there CIELAB goes first.
-    fn konig2020_passive(&self, parameters: Parameters) -> Fit {
+    fn passive(&self, parameters: Parameters) -> Fit {
         let gray = Sigmoid::flat(0.5).to_edge(MIDDLE_NM);
-        let slope_per_nm = self.fitter.slope_limit_per_nm / 2.0;
+        let slope_per_nm = self.context.slope_limit_per_nm / 2.0;
         let starts = match parameters {
             Parameters::Coefficients => vec![gray],
             Parameters::Features => {
@@ -75,18 +73,18 @@ impl Job<'_> {
         let begin = Self { goal: self.goal.under(Metric::De76), ..*self };
         let fits = starts.into_iter().map(|reflectance| {
             let start = Start { reflectance, fluorescence: Fluorescence::None };
-            let begun = begin.konig2020_follow(parameters, start);
-            self.konig2020_follow(parameters, Start::from(begun))
+            let begun = begin.followed(parameters, start);
+            self.followed(parameters, Start::from(begun))
         });
         fits.min_by(|a, b| a.distance.total_cmp(&b.distance)).expect("there is a start")
     }
 
     /// The best of `known` and of what `from` leads to, with each pair of dyes.
-    fn konig2020_variants(&self, parameters: Parameters, from: Fit, known: Fit) -> Fit {
+    fn best_variant(&self, parameters: Parameters, from: Fit, known: Fit) -> Fit {
         let mut best = known;
-        for fluorescence in variants(self.fitter.model.model(), from.fluorescence) {
+        for fluorescence in variants(self.context.model.model(), from.fluorescence) {
             let start = Start { reflectance: from.reflectance, fluorescence };
-            let found = self.konig2020_follow(parameters, start);
+            let found = self.followed(parameters, start);
             if found.distance < best.distance {
                 best = found;
             }
@@ -97,8 +95,8 @@ impl Job<'_> {
         best
     }
 
-    fn konig2020_follow(&self, parameters: Parameters, start: Start) -> Fit {
-        let slope_limit_per_nm = self.fitter.slope_limit_per_nm;
+    fn followed(&self, parameters: Parameters, start: Start) -> Fit {
+        let slope_limit_per_nm = self.context.slope_limit_per_nm;
         match parameters {
             Parameters::Coefficients => {
                 let fit = self.follow(start, Shape::Free, &Penalized { slope_limit_per_nm });
@@ -113,7 +111,7 @@ impl Job<'_> {
 
     /// A reflectance that the penalty left too steep, no steeper than the limit.
     fn held_at_limit(&self, fit: Fit) -> Fit {
-        let limit = self.fitter.slope_limit_per_nm;
+        let limit = self.context.slope_limit_per_nm;
         let Edge { slope_per_nm, .. } = fit.reflectance;
         if slope_per_nm.abs() <= limit {
             return fit;

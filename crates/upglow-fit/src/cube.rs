@@ -1,5 +1,8 @@
 //! Builds cubes.
 
+mod lattice;
+mod summary;
+
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -7,9 +10,12 @@ use rayon::prelude::*;
 use upglow::{CoefficientTableError, Cube, CubeError, FitRecord, Model, Node};
 use upglow_color::{Contract, LinearRgb, Metric};
 
-use crate::fitter::EXACT;
-use crate::lattice::Lattice;
-use crate::{Fit, FitOptions, FitOptionsError, Fitter, Progress, Watch};
+use crate::fit::{EXACT, Fit};
+use crate::fitter::Fitter;
+use crate::options::{FitOptions, FitOptionsError};
+use crate::progress::{Progress, Watch};
+use lattice::Lattice;
+pub use summary::{CubeSummary, Spread};
 
 /// Why no cube was built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -49,7 +55,7 @@ pub fn build_cube(
 ) -> Result<Cube, BuildError> {
     let lattice = Lattice::try_new(resolution)?;
     let fitter = Fitter::new(contract, model, options)?;
-    let mut fits = fit_by_levels(&fitter, lattice, watch)?;
+    let mut fits = fit_coarse_to_fine(&fitter, lattice, watch)?;
     let mut moved = vec![true; lattice.len()];
     for _ in 0..options.sweeps {
         let before = fits;
@@ -74,39 +80,39 @@ pub fn build_cube(
     Ok(Cube::new(contract.clone(), model.clone(), fit, resolution, nodes)?)
 }
 
-/// Fits every node: the coarsest level alone, each finer one from the materials around its nodes.
-fn fit_by_levels(
+/// Fits every node: those of the coarsest lattice alone, each finer one from the materials around its nodes.
+fn fit_coarse_to_fine(
     fitter: &Fitter,
     lattice: Lattice,
     watch: &dyn Watch,
 ) -> Result<Vec<Fit>, BuildError> {
-    let tally = Tally::new("fitting", lattice.len(), watch);
+    let stage = Stage::new("fitting", lattice.len(), watch);
     let mut fits = vec![None; lattice.len()];
-    for level in lattice.levels() {
-        let nodes = level.nodes();
-        let found = tally.each(nodes.len(), |i| {
-            let around: Vec<Fit> = level.around(nodes[i]).filter_map(|node| fits[node]).collect();
+    for step in lattice.refinements() {
+        let nodes = step.nodes();
+        let found = stage.each(nodes.len(), |i| {
+            let around: Vec<Fit> = step.around(nodes[i]).filter_map(|node| fits[node]).collect();
             fitter.fit_among(lattice.rgb(nodes[i]), &around)
         })?;
         nodes.into_iter().zip(found).for_each(|(node, fit)| fits[node] = Some(fit));
     }
-    Ok(fits.into_iter().map(|fit| fit.expect("the levels hold every node")).collect())
+    Ok(fits.into_iter().map(|fit| fit.expect("the steps hold every node")).collect())
 }
 
 /// How many nodes a thread takes at a time: enough that telling progress costs nothing.
 const BATCH: usize = 64;
 
 /// The work of one stage: done in parallel, told to a watcher, given up when it says so.
-pub(crate) struct Tally<'w> {
-    stage: &'static str,
+pub(crate) struct Stage<'w> {
+    name: &'static str,
     done: AtomicUsize,
     total: usize,
     watch: &'w dyn Watch,
 }
 
-impl<'w> Tally<'w> {
-    pub(crate) fn new(stage: &'static str, total: usize, watch: &'w dyn Watch) -> Self {
-        Self { stage, done: AtomicUsize::new(0), total, watch }
+impl<'w> Stage<'w> {
+    pub(crate) fn new(name: &'static str, total: usize, watch: &'w dyn Watch) -> Self {
+        Self { name, done: AtomicUsize::new(0), total, watch }
     }
 
     /// `work` for each of `count` numbers, in their order.
@@ -129,7 +135,7 @@ impl<'w> Tally<'w> {
         let finished = range.len();
         let results = range.map(work).collect();
         let done = self.done.fetch_add(finished, Ordering::Relaxed) + finished;
-        self.watch.progress(Progress { stage: self.stage, done, total: self.total });
+        self.watch.progress(Progress { stage: self.name, done, total: self.total });
         Some(results)
     }
 }
@@ -141,7 +147,7 @@ fn each_node<T: Send + Copy>(
     watch: &dyn Watch,
     work: impl Fn(usize) -> T + Sync,
 ) -> Result<Vec<T>, BuildError> {
-    Tally::new(stage, lattice.len(), watch).each(lattice.len(), work)
+    Stage::new(stage, lattice.len(), watch).each(lattice.len(), work)
 }
 
 /// One node in a sweep: what it had, or better from its neighbors.

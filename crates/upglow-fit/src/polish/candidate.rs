@@ -2,14 +2,14 @@
 
 use upglow::{Edge, Model};
 
-use crate::parabola::{MIDDLE_NM, Parabola, edge_of, scaled, sigmoid_of};
 use crate::polish::descent::{
-    Bounds, EDGE_BOUND, LEVEL_BOUND, Measure, Point, UNKNOWNS, Unknowns, Vector, dot,
-    shortest_step, within,
+    Bounds, Measure, Point, UNKNOWNS, Unknowns, Vector, dot, shortest_step, within,
 };
-use crate::polish::shine::Shown;
 use crate::polish::start::{Family, Glow};
-use crate::polish::{BELL_RANGES_NM, Polisher, UNIT_NM};
+use crate::polish::sums::Shown;
+use crate::polish::{BELL_RANGES_NM, Polisher};
+use crate::problem::parabola::{MIDDLE_NM, Parabola, UNIT_NM, edge_of, scaled, sigmoid_of};
+use crate::problem::{EDGE_BOUND, LEVEL_BOUND};
 
 /// A color of fluorescence and reflectance: itself, and derivatives.
 struct Shaded {
@@ -41,7 +41,7 @@ pub(super) struct Shape {
 
 /// A material in the chart of values.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
+pub(super) struct Candidate {
     pub(super) x: Unknowns,
     pub(super) shape: Shape,
     pub(super) steepness: Steepness,
@@ -116,15 +116,15 @@ impl Polisher<'_> {
 
     /// The material with these unknowns.
     #[inline(always)]
-    pub(super) fn place(&self, x: Unknowns) -> Place {
+    pub(super) fn candidate(&self, x: Unknowns) -> Candidate {
         let shape = self.shape(&[x[0], x[1], x[2]]);
-        Place { x, shape, steepness: self.steepness(&shape.parabola) }
+        Candidate { x, shape, steepness: self.steepness(&shape.parabola) }
     }
 
-    /// What a place in the chart of values shows.
-    pub(super) fn point_of_values(&self, family: Family, place: &Place) -> Point {
-        let x = place.x;
-        let Shape { parabola, scale } = &place.shape;
+    /// What a candidate shows, and how that changes with the unknowns.
+    pub(super) fn point_of_values(&self, family: Family, candidate: &Candidate) -> Point {
+        let x = candidate.x;
+        let Shape { parabola, scale } = &candidate.shape;
         let shaded = self.shade(family, 0.0, parabola, &[x[3], x[4], x[5]]);
         let mut by = [[0.0; 3]; UNKNOWNS];
         for i in 0..3 {
@@ -141,10 +141,10 @@ impl Polisher<'_> {
         Point { x, color: shaded.color, by }
     }
 
-    /// The color alone of a place in the chart of values.
-    pub(super) fn color_of_values(&self, family: Family, place: &Place) -> Vector {
-        let [.., c, u, v] = place.x;
-        let parabola = &place.shape.parabola;
+    /// The color alone of a candidate.
+    pub(super) fn color_of_values(&self, family: Family, candidate: &Candidate) -> Vector {
+        let [.., c, u, v] = candidate.x;
+        let parabola = &candidate.shape.parabola;
         let (mut color, emitted) = match (family, self.cube.model()) {
             (Family::Pair(first), Model::Dyes(dyes)) => {
                 let absorbers = [self.sums.dye(first), self.sums.dye(dyes.partner(first))];
@@ -170,7 +170,7 @@ impl Polisher<'_> {
         color
     }
 
-    /// A place in the chart of edges: edge (t), level, slope relative to the limit.
+    /// A material in the chart of edges: edge (t), level, slope relative to the limit.
     pub(super) fn point_of_edge(&self, family: Family, x: Unknowns) -> Point {
         let [e, p, slope, ..] = x;
         let unit = self.slope_limit_per_nm * UNIT_NM;
@@ -205,7 +205,7 @@ impl Polisher<'_> {
         x
     }
 
-    /// The edge of a place in the chart of edges.
+    /// The edge of a material in the chart of edges.
     pub(super) fn edge_of_unknowns(&self, [e, level, slope, ..]: &Unknowns) -> Edge {
         edge_of([*e, *level, slope * self.slope_limit_per_nm], 1.0)
     }
@@ -215,13 +215,13 @@ impl Polisher<'_> {
     pub(super) fn step_along_limit(
         &self,
         here: &Point,
-        place: &Place,
+        candidate: &Candidate,
         measure: &impl Measure,
         bounds: &Bounds,
         damping: f64,
     ) -> Unknowns {
-        let Shape { parabola, scale } = &place.shape;
-        let (steep, by_parabola) = place.steepness.derived(parabola, self.slope_limit_per_nm);
+        let Shape { parabola, scale } = &candidate.shape;
+        let (steep, by_parabola) = candidate.steepness.derived(parabola, self.slope_limit_per_nm);
         let ([r0, r1, r2], by_color) = here.measured(measure);
         let residual = [r0, r1, r2, STEEPNESS_WEIGHT * (steep - STEEPNESS_GOAL)];
         let mut by = [[0.0; 4]; UNKNOWNS];
@@ -327,7 +327,7 @@ impl Shaded {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::parabola::steepness;
+    use crate::problem::parabola::steepness;
     use upglow::{Cube, FitRecord, Node};
     use upglow_color::Contract;
 
