@@ -5,6 +5,7 @@ use crate::values::Xyz;
 
 /// What happens to colors when the space's white is not the illuminant's.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Adaptation {
     /// RGB (1, 1, 1) is the perfect diffuser under the illuminant: Bradford's cone responses are
     /// scaled from one white to the other.

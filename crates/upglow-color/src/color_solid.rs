@@ -9,6 +9,7 @@ use crate::values::Xyz;
 /// The set is convex; it is known by its support: for each direction the color that lies furthest
 /// out, which a material that is all-or-nothing at each wavelength shows.
 #[derive(Clone, Debug)]
+#[must_use]
 pub struct ColorSolid {
     colorimetry: Colorimetry,
     bands: Vec<Band>,
@@ -25,6 +26,7 @@ struct Band {
 
 /// The point of a [`ColorSolid`] nearest to a color.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
 pub struct Nearest {
     /// The nearest color that the solid holds, by Euclidean distance in XYZ; a color inside itself.
     pub color: Xyz,

@@ -8,6 +8,7 @@ use crate::tables::daylight::{DAYLIGHT_COMPONENTS, DAYLIGHT_FIRST_NM, DAYLIGHT_S
 /// A named light: relative spectral power on [`Grid::FINE`], 300 to 830 nm.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(transparent))]
+#[must_use]
 pub struct Illuminant {
     name: String,
     #[cfg_attr(feature = "serde", serde(skip))]

@@ -5,6 +5,7 @@ use crate::values::Xyz;
 
 /// CIELAB coordinates relative to a white.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[must_use]
 pub struct Lab {
     /// Lightness; 0 is black, 100 the white.
     pub l: f64,

@@ -49,6 +49,14 @@ mod standing;
 mod tables;
 mod values;
 
+/// What threads share: the state that one contract needs.
+const _: () = {
+    const fn is_shared<T: Send + Sync>() {}
+    is_shared::<Contract>();
+    is_shared::<Colorimetry>();
+    is_shared::<ColorSolids>();
+};
+
 #[cfg(feature = "serde")]
 #[doc(hidden)]
 pub use serde;

@@ -4,6 +4,7 @@ use std::ops::Mul;
 
 /// A 3×3 matrix, `[row][column]`. Named `target_from_source` where it converts.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
 pub struct Matrix3(pub [[f64; 3]; 3]);
 
 impl Matrix3 {

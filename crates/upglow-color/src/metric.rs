@@ -8,6 +8,7 @@ use crate::values::Xyz;
 
 /// How far one color is from another.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Metric {
     /// Euclidean distance in linear RGB of the contract's space, times 100.
     Rgb,

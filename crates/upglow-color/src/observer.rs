@@ -12,6 +12,7 @@ use crate::tables::observer::{CIE_1931_2DEG, CIE_1931_2DEG_FIRST_NM};
 /// Their common scale is free, as Y = 1 is always the perfect diffuser; their ratios are not.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(transparent))]
+#[must_use]
 pub struct Observer {
     name: String,
     /// x̄, ȳ, z̄ on [`Grid::FINE`].

@@ -7,6 +7,7 @@ use crate::samples::{Row, Rows};
 
 /// A curve over wavelength: samples on a grid, straight lines between them, zero outside.
 #[derive(Clone, Debug, PartialEq)]
+#[must_use]
 pub struct Spectrum {
     grid: Grid,
     values: Vec<f64>,
@@ -99,7 +100,6 @@ impl Spectrum {
     }
 
     /// Every sample times `factor`.
-    #[must_use]
     pub fn scaled(mut self, factor: f64) -> Self {
         self.values.iter_mut().for_each(|v| *v *= factor);
         self

@@ -23,6 +23,7 @@ pub enum StandingKind {
 /// moves to longer waves, more than a photon for a photon, so such a material can show colors a
 /// little outside.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
 pub struct Standing {
     /// What it takes to show the color.
     pub kind: StandingKind,
@@ -34,6 +35,7 @@ pub struct Standing {
 
 /// What reflectances and what fluorescent materials show under one light.
 #[derive(Clone, Debug)]
+#[must_use]
 pub struct ColorSolids {
     /// The colors of all reflectances.
     pub reflectance: ColorSolid,

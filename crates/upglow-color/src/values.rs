@@ -8,11 +8,13 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 /// Any finite number is allowed: AP1's red primary has Z < 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[must_use]
 pub struct Xyz(pub [f64; 3]);
 
 /// Linear-light RGB in the contract's space; (1, 1, 1) is that space's white.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[must_use]
 pub struct LinearRgb(pub [f64; 3]);
 
 impl LinearRgb {

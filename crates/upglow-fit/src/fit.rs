@@ -5,6 +5,7 @@ use upglow_color::Lab;
 
 /// The material of one color.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
 pub struct Fit {
     /// The reflectance, by its steepest point.
     pub reflectance: Edge,

@@ -34,6 +34,15 @@ mod search;
 mod standing_table;
 mod verify;
 
+/// What threads share: each fits, polishes and asks what colors need with one value.
+const _: () = {
+    const fn is_shared<T: Send + Sync>() {}
+    is_shared::<Fitter>();
+    is_shared::<Polisher<'_>>();
+    is_shared::<StandingTable>();
+    is_shared::<BuildError>();
+};
+
 pub use coefficients::{fit_coefficients, round_trip};
 pub use cube::{BuildError, CubeSummary, Spread, build_cube};
 pub use fit::Fit;

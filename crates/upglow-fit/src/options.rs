@@ -18,6 +18,7 @@ pub struct FitOptions {
 
 /// How materials are searched for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Method {
     /// Reflectance alone where that is enough; else the best of what starts lead to, the materials
     /// around a node or a table's, with the least fluorescence that shows the color.

@@ -51,6 +51,7 @@ use texel::Texel;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug)]
+#[must_use]
 pub struct Polisher<'c> {
     cube: &'c Cube,
     fitter: Fitter,

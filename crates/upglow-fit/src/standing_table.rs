@@ -19,6 +19,7 @@ use reach::Reach;
 /// colors are told apart as finely as bright ones, and each is settled when the first color falls
 /// in it. The answers do not depend on what was asked before, or by which thread.
 #[derive(Debug)]
+#[must_use]
 pub struct StandingTable {
     reach: Reach,
     /// Black and white, which fill whole parts of pictures and lie on a surface.
@@ -29,6 +30,7 @@ pub struct StandingTable {
 
 /// Where a color stands, and about how far it is from what it is beyond.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
 pub struct Estimate {
     /// Exactly the kind of [`StandingTable::standing`].
     pub kind: StandingKind,

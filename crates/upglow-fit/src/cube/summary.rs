@@ -5,6 +5,7 @@ use upglow::Cube;
 /// What the stored differences of a cube's nodes add up to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[must_use]
 pub struct CubeSummary {
     /// Nodes of the cube.
     pub nodes: usize,
@@ -51,6 +52,7 @@ impl CubeSummary {
 
 /// Mean, 95th percentile and greatest of some numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
 pub struct Spread {
     /// The mean.
     pub mean: f64,

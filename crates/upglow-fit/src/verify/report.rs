@@ -11,6 +11,7 @@ pub struct Stopped;
 
 /// What was found in a cube.
 #[derive(Clone, Debug, PartialEq)]
+#[must_use]
 pub struct VerifyReport {
     /// Nodes checked.
     pub nodes: usize,

@@ -1,6 +1,6 @@
 //! Figures 3, 6 and 7: what metric and sweeps do to a layer.
 
-use upglow_color::{Grid, Metric};
+use upglow_color::{Choice, Grid, Metric};
 
 use super::cut::Cut;
 use super::sheet::{Sheet, errors_text, layers_page};
@@ -22,6 +22,7 @@ impl Variant {
             Metric::Rgb => "RGB distance",
             Metric::De76 => "Δ*E*_{76}",
             Metric::De2000 => "Δ*E*_{00}",
+            other => other.name(),
         };
         format!("{metric}, {} sweeps", self.sweeps)
     }
@@ -31,6 +32,7 @@ impl Variant {
             Metric::Rgb => "Euclidean distance in RGB",
             Metric::De76 => "ΔE76",
             Metric::De2000 => "ΔE00",
+            other => other.name(),
         };
         format!("{metric}, {} sweeps", self.sweeps)
     }
