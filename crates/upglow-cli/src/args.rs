@@ -88,7 +88,8 @@ pub(crate) struct VerifyArgs {
     /// Number of random colors to try between the nodes
     #[arg(long, default_value = "1000000", value_name = "N", value_parser = count::<usize>)]
     pub(crate) points: usize,
-    /// How colors between the nodes get their material
+    /// How colors between the nodes get their material: blend mixes those of the four nodes around
+    /// the color, none takes the nearest one, the others interpolate parameters as König et al. 2020
     #[arg(long, default_value_t, value_name = "NAME", value_parser = word::<Interpolation>())]
     pub(crate) interpolation: Interpolation,
     /// Seed of the random colors; the same seed draws the same colors
@@ -105,13 +106,15 @@ pub(crate) struct ColorArgs {
     /// Linear red in the RGB space of the cube, 0 to 1; up to 10 with --direct
     #[arg(value_name = "R", allow_hyphen_values = true)]
     pub(crate) red: String,
-    /// Linear green
+    /// Linear green, like red
     #[arg(value_name = "G", allow_hyphen_values = true)]
     pub(crate) green: String,
-    /// Linear blue
+    /// Linear blue, like red
     #[arg(value_name = "B", allow_hyphen_values = true)]
     pub(crate) blue: String,
-    /// How a color between the nodes gets its material [default: blend]
+    /// How a color between the nodes gets its material: blend mixes those of the four nodes around
+    /// it, none takes the nearest one, the others interpolate parameters as König et al. 2020
+    /// [default: blend]
     #[arg(long, value_name = "NAME", value_parser = word::<Interpolation>(), conflicts_with = "direct")]
     pub(crate) interpolation: Option<Interpolation>,
     /// Fit a material to this color, with the options of the cube, instead of looking it up

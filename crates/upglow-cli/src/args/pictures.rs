@@ -41,6 +41,8 @@ pub(crate) struct BakeArgs {
     /// reflectance in bands and re-radiation between them; radiance stores the color under --light
     #[arg(long = "as", default_value_t = BakeForm::Material, value_name = "NAME", value_parser = word::<BakeForm>())]
     pub(crate) form: BakeForm,
+    #[command(flatten)]
+    pub(crate) threads: Threads,
 
     #[command(flatten)]
     pub(crate) picture: PictureArgs,
@@ -52,8 +54,6 @@ pub(crate) struct BakeArgs {
 
     #[command(flatten)]
     pub(crate) result: ResultArgs,
-    #[command(flatten)]
-    pub(crate) threads: Threads,
 }
 
 #[derive(Clone, Debug, clap::Args)]
@@ -92,8 +92,6 @@ pub(crate) struct CheckArgs {
     /// Also report how close the materials of this cube come; its light and adaptation are used
     #[arg(long, value_name = "FILE")]
     pub(crate) cube: Option<PathBuf>,
-    #[command(flatten)]
-    pub(crate) picture: PictureArgs,
     /// Light: D65, D60, D55, D50, A, E, or a CSV file with the header `wavelength_nm,power`
     /// [default: D65]
     #[arg(long, value_name = "NAME|FILE", conflicts_with = "cube")]
@@ -104,6 +102,8 @@ pub(crate) struct CheckArgs {
     pub(crate) adapt: Option<Adaptation>,
     #[command(flatten)]
     pub(crate) threads: Threads,
+    #[command(flatten)]
+    pub(crate) picture: PictureArgs,
 }
 
 #[derive(Clone, Debug, clap::Args)]
