@@ -31,24 +31,9 @@ mod colors;
 
 mod pointer;
 
-pub use colors::{
-    UpglowColors, upglow_colors_create, upglow_colors_create_sampled, upglow_colors_destroy,
-    upglow_xyz,
-};
-pub use cube::{
-    UpglowCube, UpglowCubeFacts, upglow_cube_destroy, upglow_cube_facts, upglow_cube_from_memory,
-    upglow_cube_open,
-};
-pub use failure::{UpglowStatus, upglow_message, upglow_status_name};
-pub use material::{
-    UpglowMaterial, upglow_albedo, upglow_is_fluorescent, upglow_look_up, upglow_look_up_many,
-    upglow_reflectance, upglow_reflectance_4, upglow_reflectance_8, upglow_reradiation,
-};
-pub use sampling::{
-    UpglowDraw, UpglowSample, upglow_incident_elastic_probability, upglow_incident_pdf,
-    upglow_outgoing_elastic_probability, upglow_outgoing_pdf, upglow_sample_incident,
-    upglow_sample_outgoing,
-};
-pub use version::{
-    UPGLOW_VERSION_MAJOR, UPGLOW_VERSION_MINOR, UPGLOW_VERSION_PATCH, upglow_version,
-};
+pub use colors::*;
+pub use cube::*;
+pub use failure::*;
+pub use material::*;
+pub use sampling::*;
+pub use version::*;

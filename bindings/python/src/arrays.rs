@@ -37,14 +37,11 @@ pub(crate) fn to_single(Xyz(xyz): Xyz) -> [f32; 3] {
     xyz.map(f32::from_double)
 }
 
-/// Rows of three numbers.
-pub(crate) fn triples<T>(numbers: &[T]) -> &[[T; 3]] {
-    numbers.as_chunks().0
-}
-
-/// An RGB or XYZ array as rows, for a function that knows only single precision.
-pub(crate) fn single_rows<'a>(array: &'a PyReadonlyArray2<'_, f32>) -> PyResult<&'a [[f32; 3]]> {
-    Ok(triples(array.as_slice()?))
+/// An array as rows of three numbers.
+pub(crate) fn triples<'a, T: Element>(
+    array: &'a PyReadonlyArray2<'_, T>,
+) -> PyResult<&'a [[T; 3]]> {
+    Ok(array.as_slice()?.as_chunks().0)
 }
 
 /// Numbers that a thread makes at a time: enough that handing them out costs nothing.

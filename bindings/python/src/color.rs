@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use upglow::ColorTable;
 use upglow_color::{Colorimetry, Contract, Grid, LinearRgb, Metric, Xyz, choices};
 
-use crate::arrays::{Number, fill, single_rows, to_single};
+use crate::arrays::{Number, fill, to_single, triples};
 use crate::cube::Cube;
 use crate::errors::value_error;
 use crate::illuminant::Illuminant;
@@ -34,7 +34,6 @@ choices!(Scale, "scale", White = "white", Power = "power");
 
 /// The colors of a cube's materials under `light`, or under its own; sums are over 1 or 5 nm.
 #[pyfunction]
-#[pyo3(signature = (cube, light, scale, step_nm))]
 pub(crate) fn colors(
     py: Python<'_>,
     cube: &Cube,
@@ -70,7 +69,7 @@ impl Colors {
         rgb: PyReadonlyArray2<'py, f32>,
         threads: Option<usize>,
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        self.each(py, single_rows(&rgb)?, threads, |_| ())
+        self.each(py, triples(&rgb)?, threads, |_| ())
     }
 
     /// Linear RGB under the light of each RGB, `[color][channel]`; not-a-number outside 0..=1.
@@ -80,7 +79,7 @@ impl Colors {
         rgb: PyReadonlyArray2<'py, f32>,
         threads: Option<usize>,
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        self.each(py, single_rows(&rgb)?, threads, |colors| {
+        self.each(py, triples(&rgb)?, threads, |colors| {
             for color in colors {
                 let LinearRgb(rgb) = self.colorimetry.rgb_from_xyz(Xyz(color.map(f64::from)));
                 *color = to_single(Xyz(rgb));
@@ -95,10 +94,10 @@ impl Colors {
         rgb: PyReadonlyArray2<'py, f32>,
         threads: Option<usize>,
     ) -> PyResult<Bound<'py, PyArray1<f32>>> {
-        let rgb = single_rows(&rgb)?;
+        let rgb = triples(&rgb)?;
         let shown = self.each(py, rgb, threads, |_| ())?;
         let shown = shown.readonly();
-        let shown = single_rows(&shown)?;
+        let shown = triples(&shown)?;
         let mut out = vec![0.0; rgb.len()];
         let difference = |row: usize| {
             let target = self.colorimetry.xyz_from_rgb(LinearRgb(rgb[row].map(f64::from)));

@@ -4,7 +4,7 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use upglow::{FeatureError, Features, Interpolation};
 use upglow_color::{ColorSolid, Grid, Lab, Xyz, choices};
-use upglow_study::{ChromaticityDiagram, Layer, Mixing, standing_layer};
+use upglow_study::{ChromaticityDiagram, Layer, Mixing};
 
 use crate::contract::Contract;
 use crate::cube::Cube;
@@ -67,7 +67,6 @@ pub(crate) fn chromaticity_diagram<'py>(
 
 /// X, Y, Z and chromaticity of each node's color, `[node][X Y Z]` and `[node][x y]`.
 #[pyfunction]
-#[pyo3(signature = (cube, threads))]
 pub(crate) fn node_colors<'py>(
     py: Python<'py>,
     cube: &Cube,
@@ -87,7 +86,6 @@ type LayerArrays<'py> = (f64, Rows<'py>, Bound<'py, PyArray1<f64>>, Bound<'py, P
 /// Blue, linear RGB shown, `[green · red][channel]`, ΔE00 from what is asked for, and whether all nodes
 /// that take part are exact: of the layer of nodes nearest to `blue`, or of `side`² colors at `blue`.
 #[pyfunction]
-#[pyo3(signature = (cube, blue, side, interpolation, threads))]
 pub(crate) fn layer<'py>(
     py: Python<'py>,
     cube: &Cube,
@@ -140,24 +138,6 @@ pub(crate) fn dye_spectra<'py>(
     ))
 }
 
-/// What it takes to show `side`² colors at one blue, `[green · red]`: 0, some reflectance; 1, some
-/// fluorescent material; 2, nothing does.
-#[pyfunction]
-#[pyo3(signature = (contract, blue, side, threads))]
-pub(crate) fn reachability<'py>(
-    py: Python<'py>,
-    contract: &Contract,
-    blue: f64,
-    side: usize,
-    threads: Option<usize>,
-) -> PyResult<Bound<'py, PyArray1<u8>>> {
-    check_blue(blue)?;
-    check_points("side", side)?;
-    let contract = &contract.contract;
-    let layer = py.detach(|| on_threads(threads, || standing_layer(contract, blue, side)))?;
-    Ok(PyArray1::from_iter(py, layer.iter().map(|&kind| kind as u8)))
-}
-
 /// What materials a solid of colors is of.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Materials {
@@ -170,7 +150,6 @@ choices!(Materials, "materials", Reflectance = "reflectance", Fluorescence = "fl
 /// X, Y, Z and L*, a*, b* of points on the surface of the solid of all reflectances, or of all
 /// fluorescent materials: `[polar · azimuth][3]`, `steps` + 1 by 2 · `steps` + 1.
 #[pyfunction]
-#[pyo3(signature = (contract, materials, steps, threads))]
 pub(crate) fn solid_surface<'py>(
     py: Python<'py>,
     contract: &Contract,

@@ -24,7 +24,6 @@ type Options = (Word<Metric>, Option<f64>, Word<Method>, Option<u32>);
 
 /// Fits a material for every node of a cube.
 #[pyfunction]
-#[pyo3(signature = (contract, model, resolution, options, threads, report))]
 pub(crate) fn build(
     py: Python<'_>,
     contract: &Contract,
@@ -47,7 +46,6 @@ pub(crate) fn build(
 
 /// Fits a material for each RGB, as the cube's nodes were fitted.
 #[pyfunction]
-#[pyo3(signature = (cube, rgb, threads, report))]
 pub(crate) fn fit<'py>(
     py: Python<'py>,
     cube: &Cube,
@@ -62,7 +60,7 @@ pub(crate) fn fit<'py>(
         method: method.parse().map_err(value_error)?,
         sweeps: *sweeps,
     };
-    let rgb = triples(rgb.as_slice()?);
+    let rgb = triples(&rgb)?;
     let fitted = watched(py, report, |watcher| {
         let fitter = Fitter::new(cube.cube.contract(), cube.cube.model(), options);
         let fitter = fitter.map_err(value_error)?;

@@ -40,7 +40,7 @@ mod _upglow {
         cube::Cube,
         figures::{
             chromaticity_diagram, dye_spectra, layer, mixed_reflectances, node_colors,
-            reachability, solid_surface,
+            solid_surface,
         },
         fit::{build, fit},
         illuminant::Illuminant,

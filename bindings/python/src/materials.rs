@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use upglow::Node;
 use upglow_fit::Polisher;
 
-use crate::arrays::{single_rows, triples};
+use crate::arrays::triples;
 use crate::cube::Cube;
 use crate::errors::value_error;
 use crate::nodes::{Arrays, arrays};
@@ -17,14 +17,13 @@ const BATCH: usize = 1024;
 
 /// One material for each RGB; not-a-number outside 0..=1.
 #[pyfunction]
-#[pyo3(signature = (cube, rgb, threads))]
 pub(crate) fn polish<'py>(
     py: Python<'py>,
     cube: &Cube,
     rgb: PyReadonlyArray2<'py, f32>,
     threads: Option<usize>,
 ) -> PyResult<Arrays<'py>> {
-    let rgb = single_rows(&rgb)?;
+    let rgb = triples(&rgb)?;
     let polished = py.detach(|| {
         let polisher = Polisher::new(&cube.cube).map_err(value_error)?;
         let mut texels = vec![Node::default(); rgb.len()];
@@ -43,13 +42,12 @@ type NodesAndWeights<'py> = (Bound<'py, PyArray2<usize>>, Bound<'py, PyArray2<f6
 
 /// The four nodes around each RGB; outside 0..=1 their weights are not-a-number.
 #[pyfunction]
-#[pyo3(signature = (cube, rgb))]
 pub(crate) fn corners<'py>(
     py: Python<'py>,
     cube: &Cube,
     rgb: PyReadonlyArray2<'py, f64>,
 ) -> PyResult<NodesAndWeights<'py>> {
-    let rgb = triples(rgb.as_slice()?);
+    let rgb = triples(&rgb)?;
     let around = |rgb: &[f64; 3]| {
         cube.cube.corners(upglow_color::LinearRgb(*rgb)).unwrap_or([(0, f64::NAN); 4])
     };

@@ -33,8 +33,8 @@ pub(crate) fn nodes(
     dye: &PyReadonlyArray1<'_, u8>,
     fluorescence: &PyReadonlyArray2<'_, f32>,
 ) -> PyResult<Vec<Node>> {
-    let (reflectance, dye) = (triples(reflectance.as_slice()?), dye.as_slice()?);
-    let fluorescence = triples(fluorescence.as_slice()?);
+    let (reflectance, dye) = (triples(reflectance)?, dye.as_slice()?);
+    let fluorescence = triples(fluorescence)?;
     check_count("dyes", dye.len(), reflectance.len())?;
     check_count("fluorescences", fluorescence.len(), reflectance.len())?;
     let rows = reflectance.iter().zip(dye).zip(fluorescence);

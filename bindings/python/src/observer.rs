@@ -38,7 +38,7 @@ impl Observer {
         wavelengths_nm: PyReadonlyArray1<'_, f64>,
         matching: PyReadonlyArray2<'_, f64>,
     ) -> PyResult<Self> {
-        let (nm, matching) = (wavelengths_nm.as_slice()?, triples(matching.as_slice()?));
+        let (nm, matching) = (wavelengths_nm.as_slice()?, triples(&matching)?);
         upglow_color::Observer::from_samples(name, nm, matching)
             .map(Self)
             .map_err(|error| value_error(format_args!("{name}: {error}")))

@@ -83,7 +83,6 @@ fn fill<T: Number>(out: &mut [T], sample: Option<Sample<T>>) {
 /// What each material answers to a question with numbers of its own: `given` is `[color][number]`,
 /// the result `[color][1]`, and `[color][4]` for draws.
 #[pyfunction]
-#[pyo3(signature = (cube, of, question, given, threads))]
 pub(crate) fn answer<'py>(
     py: Python<'py>,
     cube: &Cube,

@@ -87,13 +87,11 @@ macro_rules! with_rows {
     ($cube:expr, $subjects:expr, $rows:ident => $work:expr) => {
         match &$subjects {
             $crate::rows::Subjects::Single(rgb) => {
-                let $rows =
-                    $crate::rows::Singles($cube.table(), $crate::arrays::triples(rgb.as_slice()?));
+                let $rows = $crate::rows::Singles($cube.table(), $crate::arrays::triples(rgb)?);
                 $work.map(pyo3::Bound::into_any)
             }
             $crate::rows::Subjects::Double(rgb) => {
-                let $rows =
-                    $crate::rows::Doubles(&$cube.cube, $crate::arrays::triples(rgb.as_slice()?));
+                let $rows = $crate::rows::Doubles(&$cube.cube, $crate::arrays::triples(rgb)?);
                 $work.map(pyo3::Bound::into_any)
             }
             $crate::rows::Subjects::Stored(reflectance, dye, fluorescence) => {
@@ -129,7 +127,6 @@ pub(crate) fn answers<'py, R: Rows>(
 
 /// Row and message of the first RGB that is not in 0..=1, or, for fits, in 0..=10.
 #[pyfunction]
-#[pyo3(signature = (rgb, to_fit))]
 pub(crate) fn first_outside(
     py: Python<'_>,
     rgb: Subjects<'_>,

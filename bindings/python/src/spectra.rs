@@ -25,7 +25,6 @@ choices!(Quantity, "quantity", Reflectance = "reflectance", Albedo = "albedo");
 
 /// Reflectances or albedos, `[color][wavelength]`.
 #[pyfunction]
-#[pyo3(signature = (cube, of, quantity, wavelengths_nm, threads))]
 pub(crate) fn spectrum<'py>(
     py: Python<'py>,
     cube: &Cube,
@@ -48,7 +47,6 @@ pub(crate) fn spectrum<'py>(
 /// Re-radiation matrices over the bands of a grid (first, last, step: nm), in double precision,
 /// `[color][outgoing · incident]`.
 #[pyfunction]
-#[pyo3(signature = (cube, of, grid_nm, threads))]
 pub(crate) fn reradiation_matrix<'py>(
     py: Python<'py>,
     cube: &Cube,
@@ -59,11 +57,9 @@ pub(crate) fn reradiation_matrix<'py>(
     let [first_nm, last_nm, step_nm] = grid_nm;
     let grid = Grid::try_new(first_nm, last_nm, step_nm).map_err(value_error)?;
     match &of {
-        Subjects::Double(rgb) => {
-            matrices(py, &Doubles(&cube.cube, triples(rgb.as_slice()?)), grid, threads)
-        }
+        Subjects::Double(rgb) => matrices(py, &Doubles(&cube.cube, triples(rgb)?), grid, threads),
         Subjects::Single(rgb) => {
-            let rgb: Vec<_> = triples(rgb.as_slice()?).iter().map(|v| v.map(f64::from)).collect();
+            let rgb: Vec<_> = triples(rgb)?.iter().map(|v| v.map(f64::from)).collect();
             matrices(py, &Doubles(&cube.cube, &rgb), grid, threads)
         }
         Subjects::Stored(reflectance, dye, fluorescence) => {

@@ -15,14 +15,13 @@ type Standings<'py> =
 /// Where each RGB stands under a contract: 0, reflectances show it; 1, it needs fluorescence; 2,
 /// nothing shows it. And how far it is from what it is beyond, in XYZ and in ΔE00.
 #[pyfunction]
-#[pyo3(signature = (contract, rgb, threads))]
 pub(crate) fn standing<'py>(
     py: Python<'py>,
     contract: &Contract,
     rgb: PyReadonlyArray2<'py, f64>,
     threads: Option<usize>,
 ) -> PyResult<Standings<'py>> {
-    let rgb = triples(rgb.as_slice()?);
+    let rgb = triples(&rgb)?;
     let mut found = vec![(0, 0.0, 0.0); rgb.len()];
     py.detach(|| {
         let table = contract.standing_table();

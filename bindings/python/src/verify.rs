@@ -25,7 +25,6 @@ type Row = (
 
 /// Nodes, points, whether all laws hold, and every check.
 #[pyfunction]
-#[pyo3(signature = (cube, points, interpolation, seed, threads, report))]
 pub(crate) fn verify(
     py: Python<'_>,
     cube: &Cube,

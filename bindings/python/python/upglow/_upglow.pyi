@@ -28,7 +28,6 @@ __all__ = [
     "mixed_reflectances",
     "node_colors",
     "polish",
-    "reachability",
     "reradiation_matrix",
     "solid_surface",
     "spectrum",
@@ -43,6 +42,7 @@ _Singles = NDArray[np.float32]
 _Stored = tuple[_Singles, NDArray[np.uint8], _Singles]
 _Subjects = _Singles | _Doubles | _Stored
 _Materials = tuple[_Singles, NDArray[np.uint8], _Singles, _Singles]
+_Threads = int | None
 _Report = Callable[[str, int, int], Any]
 _Check = tuple[str, str, str, float, float | None, str, int, int, str | None]
 _Dye = tuple[str, list[float], list[float], list[float], float | None]
@@ -168,63 +168,54 @@ class Cube:
 
 @final
 class Colors:
-    def xyz(self, rgb: _Singles, threads: int | None) -> _Singles: ...
-    def rgb(self, rgb: _Singles, threads: int | None) -> _Singles: ...
-    def de2000(self, rgb: _Singles, threads: int | None) -> _Singles: ...
+    def xyz(self, rgb: _Singles, threads: _Threads) -> _Singles: ...
+    def rgb(self, rgb: _Singles, threads: _Threads) -> _Singles: ...
+    def de2000(self, rgb: _Singles, threads: _Threads) -> _Singles: ...
 
 def build(
     contract: Contract,
     model: Model,
     resolution: int,
     options: tuple[str, float | None, str, int | None],
-    threads: int | None,
+    threads: _Threads,
     report: _Report | None,
 ) -> Cube: ...
-def fit(
-    cube: Cube, rgb: _Doubles, threads: int | None, report: _Report | None
-) -> _Materials: ...
-def polish(cube: Cube, rgb: _Singles, threads: int | None) -> _Materials: ...
+def fit(cube: Cube, rgb: _Doubles, threads: _Threads, report: _Report | None) -> _Materials: ...
+def polish(cube: Cube, rgb: _Singles, threads: _Threads) -> _Materials: ...
 def corners(cube: Cube, rgb: _Doubles) -> tuple[NDArray[np.uintp], _Doubles]: ...
-def colors(
-    cube: Cube, light: Illuminant | None, scale: str, step_nm: int
-) -> Colors: ...
+def colors(cube: Cube, light: Illuminant | None, scale: str, step_nm: int) -> Colors: ...
 def first_outside(rgb: _Singles | _Doubles, to_fit: bool) -> tuple[int, str] | None: ...
 def spectrum(
-    cube: Cube, of: _Subjects, quantity: str, wavelengths_nm: Sequence[float], threads: int | None
+    cube: Cube, of: _Subjects, quantity: str, wavelengths_nm: Sequence[float], threads: _Threads
 ) -> NDArray[Any]: ...
 def answer(
-    cube: Cube, of: _Subjects, question: str, given: _Doubles, threads: int | None
+    cube: Cube, of: _Subjects, question: str, given: _Doubles, threads: _Threads
 ) -> NDArray[Any]: ...
 def reradiation_matrix(
-    cube: Cube, of: _Subjects, grid_nm: Sequence[int], threads: int | None
+    cube: Cube, of: _Subjects, grid_nm: Sequence[int], threads: _Threads
 ) -> _Doubles: ...
 def standing(
-    contract: Contract, rgb: _Doubles, threads: int | None
+    contract: Contract, rgb: _Doubles, threads: _Threads
 ) -> tuple[NDArray[np.uint8], _Doubles, _Doubles]: ...
 def verify(
     cube: Cube,
     points: int,
     interpolation: str,
     seed: int,
-    threads: int | None,
+    threads: _Threads,
     report: _Report | None,
 ) -> tuple[int, int, bool, list[_Check]]: ...
 
-def chromaticity_diagram(
-    contract: Contract,
-) -> tuple[_Doubles, _Doubles, _Doubles, _Doubles]: ...
-def node_colors(cube: Cube, threads: int | None) -> tuple[_Doubles, _Doubles]: ...
+def chromaticity_diagram(contract: Contract) -> tuple[_Doubles, _Doubles, _Doubles, _Doubles]: ...
+def node_colors(cube: Cube, threads: _Threads) -> tuple[_Doubles, _Doubles]: ...
 def layer(
-    cube: Cube, blue: float, side: int | None, interpolation: str, threads: int | None
+    cube: Cube, blue: float, side: int | None, interpolation: str, threads: _Threads
 ) -> tuple[float, _Doubles, _Doubles, NDArray[np.bool_]]: ...
 def dye_spectra(
     model: Model, observer: Observer
 ) -> tuple[list[str], _Doubles, _Doubles, _Doubles, _Doubles]: ...
-def reachability(
-    contract: Contract, blue: float, side: int, threads: int | None
-) -> NDArray[np.uint8]: ...
 def solid_surface(
-    contract: Contract, materials: str, steps: int, threads: int | None
+    contract: Contract, materials: str, steps: int, threads: _Threads
 ) -> tuple[_Doubles, _Doubles]: ...
 def mixed_reflectances(
     first: Sequence[float], second: Sequence[float], mixing: str, shares: Sequence[float]

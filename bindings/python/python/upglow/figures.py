@@ -39,6 +39,7 @@ from ._contract import Contract
 from ._cube import Cube
 from ._models import Dyes
 from ._observer import Observer
+from ._standing import standing
 from ._wavelengths import FINE_NM
 
 __all__ = [
@@ -56,6 +57,9 @@ __all__ = [
     "node_colors",
     "reachability",
 ]
+
+_MOST_POINTS = 2048
+"""Most points along an axis: more are a typing error, they would fill the memory."""
 
 
 class ChromaticityDiagram(NamedTuple):
@@ -237,8 +241,7 @@ def reachability(
 ) -> Reachability:
     """What any material can show of a space: the limit of physics, not of a fit.
 
-    The verdicts are exact, where those of `upglow.standing` are interpolated; they take some ten
-    microseconds each. They know no slope limit and no dyes, and count photons.
+    The kinds of `upglow.standing`, which know no slope limit and no dyes, and count photons.
 
     Parameters
     ----------
@@ -249,11 +252,17 @@ def reachability(
     side
         Colors along red and along green, 2 to 2048.
     """
-    native = (contract or Contract())._native
+    if not 2 <= side <= _MOST_POINTS:
+        raise ValueError(f"side is {side}, expected 2 to {_MOST_POINTS}")
     axis = np.linspace(0.0, 1.0, side)
-    blues = axis if blue is None else np.atleast_1d(np.asarray(blue, dtype=np.float64))
-    layers = [_upglow.reachability(native, b, side, threads) for b in blues.ravel().tolist()]
-    return Reachability(blues.ravel(), axis, np.stack(layers).reshape(-1, side, side))
+    blues = axis if blue is None else np.asarray(blue, dtype=np.float64).ravel()
+    layers = []
+    for each in blues.tolist():
+        if not 0 <= each <= 1:
+            raise ValueError(f"blue is {each:g}, expected 0 to 1")
+        rgb = np.stack([*np.meshgrid(axis, axis), np.full((side, side), each)], axis=-1)
+        layers.append(standing(rgb, contract, threads=threads).kind)
+    return Reachability(blues, axis, np.stack(layers))
 
 
 class ColorSolid(NamedTuple):
