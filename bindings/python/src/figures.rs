@@ -179,24 +179,15 @@ pub(crate) fn mixed_reflectances<'py>(
     py: Python<'py>,
     first: [f64; 3],
     second: [f64; 3],
-    mixing: &str,
+    mixing: Word<Mixing>,
     shares: Vec<f64>,
 ) -> PyResult<Rows<'py>> {
-    let way = match mixing {
-        "coefficients" => Mixing::Coefficients,
-        "spectra" => Mixing::Spectra,
-        "features" => Mixing::Features,
-        _ => {
-            let expected = "expected coefficients, spectra or features";
-            return Err(value_error(format_args!("unknown mixing {mixing:?}, {expected}")));
-        }
-    };
     let ends = [first, second].map(|[shift_nm, width_nm, slope_per_nm]| Features {
         shift_nm,
         width_nm,
         slope_per_nm,
     });
     let curves: Result<Vec<_>, FeatureError> =
-        shares.iter().map(|&share| way.sample(ends, share)).collect();
+        shares.iter().map(|&share| mixing.0.sample(ends, share)).collect();
     Ok(PyArray2::from_vec2(py, &curves.map_err(value_error)?)?)
 }

@@ -1,7 +1,7 @@
 //! What lies between two reflectances.
 
 use upglow::{FeatureError, Features, Sigmoid};
-use upglow_color::Grid;
+use upglow_color::{Grid, choices};
 
 /// What is mixed linearly to make a reflectance between two.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -13,6 +13,14 @@ pub enum Mixing {
     /// Shift, width and slope.
     Features,
 }
+
+choices!(
+    Mixing,
+    "mixing",
+    Coefficients = "coefficients",
+    Spectra = "spectra",
+    Features = "features",
+);
 
 impl Mixing {
     /// The reflectance with the share `weight`, 0..=1, of the second end, on [`Grid::FINE`].
