@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use rayon::prelude::*;
-use upglow::{FitRecord, Node};
+use upglow::Node;
 use upglow_color::{LinearRgb, Metric};
 use upglow_fit::{FitOptions, Fitter, Method, Progress, Watch, build_cube};
 
@@ -53,13 +53,7 @@ pub(crate) fn fit<'py>(
     threads: Option<usize>,
     report: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Arrays<'py>> {
-    let FitRecord { metric, slope_max_per_nm, method, sweeps, .. } = cube.cube.fit();
-    let options = FitOptions {
-        metric: metric.parse().map_err(value_error)?,
-        slope_max_per_nm: *slope_max_per_nm,
-        method: method.parse().map_err(value_error)?,
-        sweeps: *sweeps,
-    };
+    let options = FitOptions::try_from(cube.cube.fit()).map_err(value_error)?;
     let rgb = triples(&rgb)?;
     let fitted = watched(py, report, |watcher| {
         let fitter = Fitter::new(cube.cube.contract(), cube.cube.model(), options);

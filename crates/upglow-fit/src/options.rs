@@ -1,6 +1,7 @@
 //! What a fit is asked for.
 
-use upglow_color::{Metric, choices};
+use upglow::FitRecord;
+use upglow_color::{Metric, UnknownChoice, choices};
 
 /// The choices in a fit, apart from contract and model.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,6 +75,20 @@ impl Default for FitOptions {
             sweeps: Method::Search.default_sweeps(),
             method: Method::Search,
         }
+    }
+}
+
+/// The choices that a cube records.
+impl TryFrom<&FitRecord> for FitOptions {
+    type Error = UnknownChoice;
+
+    fn try_from(record: &FitRecord) -> Result<Self, UnknownChoice> {
+        Ok(Self {
+            metric: record.metric.parse()?,
+            slope_max_per_nm: record.slope_max_per_nm,
+            sweeps: record.sweeps,
+            method: record.method.parse()?,
+        })
     }
 }
 

@@ -5,7 +5,7 @@ use upglow_color::{
     Adaptation, ColorSolids, Colorimetry, Contract, Grid, Illuminant, LinearRgb, Metric, Nearest,
     RgbSpace, StandingKind, Xyz,
 };
-use upglow_fit::{FitOptions, Fitter, Method};
+use upglow_fit::{FitOptions, Fitter};
 use upglow_terminal::{Console, Failure};
 
 use super::color_report::{ColorReport, LightReport, PartReport, StandingReport};
@@ -44,14 +44,8 @@ fn no_material(error: impl std::error::Error + Send + Sync + 'static) -> Failure
 
 /// A material fitted to one color as those of the cube's nodes were.
 fn fitted<'c>(rgb: LinearRgb, cube: &'c Cube, args: &ColorArgs) -> Result<Mixture<'c>, Failure> {
-    let record = cube.fit();
-    let unknown = |error| Failure::file(&args.file, error);
-    let options = FitOptions {
-        metric: record.metric.parse::<Metric>().map_err(unknown)?,
-        slope_max_per_nm: record.slope_max_per_nm,
-        sweeps: record.sweeps,
-        method: record.method.parse::<Method>().map_err(unknown)?,
-    };
+    let options =
+        FitOptions::try_from(cube.fit()).map_err(|error| Failure::file(&args.file, error))?;
     let fitter = Fitter::new(cube.contract(), cube.model(), options)
         .map_err(|error| Failure::file(&args.file, error))?;
     let fit = fitter.fit(rgb).map_err(no_material)?;
