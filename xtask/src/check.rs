@@ -5,7 +5,7 @@ use std::process::Command;
 use std::time::Instant;
 
 use crate::step::{Step, StepError, cargo, finish, finish_aloud, output_of};
-use crate::{c_library, layers, mitsuba, python, python_wheel, readme, tables, words};
+use crate::{c_library, guide, layers, mitsuba, python, python_wheel, tables, words};
 
 /// Set for the slow tests, so that they may take larger samples.
 const SLOW_VARIABLE: &str = "UPGLOW_SLOW";
@@ -24,7 +24,7 @@ const STEPS: [Step; 9] = [
         run: python_for_tests,
     },
     Step { name: "tests", about: "the tests that are not slow", run: quick_tests },
-    Step { name: "readme", about: "the README's examples print what it says", run: readme::check },
+    Step { name: "guide", about: "the examples of docs/guide.md work", run: guide::check },
     Step { name: "licenses", about: "licenses and sources of what we depend on", run: licenses },
 ];
 

@@ -1,4 +1,4 @@
-//! The shell examples of `README.md` that say they are checked.
+//! The shell examples of docs/guide.md that are marked as checked.
 //!
 //! The line `<!-- checked -->` marks the fenced block after it. A `sh` block is one script that
 //! must succeed. In a `console` block each `$ ` line is a command that must succeed; the lines
@@ -12,13 +12,16 @@ use std::process::Command;
 
 use crate::step::{StepError, read, release_bin_dir};
 
+/// The page, relative to the repository root.
+const PAGE: &str = "docs/guide.md";
+
 /// The line that marks the next block.
 const MARKER: &str = "<!-- checked -->";
 
 /// One command and what it must print.
 #[derive(Clone, Debug, PartialEq)]
 struct Example {
-    /// Line of the command in the README, from 1.
+    /// Line of the command in the page, from 1.
     line: usize,
     /// The script, for `sh`.
     script: String,
@@ -28,9 +31,9 @@ struct Example {
 
 /// Runs the examples in order in one new folder, so that one may use the files of another.
 pub(crate) fn check(root: &Path) -> Result<(), StepError> {
-    let examples = examples(&read(&root.join("README.md"))?)?;
+    let examples = examples(&read(&root.join(PAGE))?)?;
     if examples.is_empty() {
-        return Err(StepError::Skipped("no checked example in README.md"));
+        return Err(StepError::Skipped("no checked example in docs/guide.md"));
     }
     let bin_dir = release_bin_dir(root)?;
     let folder = TemporaryFolder::create()?;
@@ -43,7 +46,7 @@ struct TemporaryFolder(PathBuf);
 
 impl TemporaryFolder {
     fn create() -> Result<Self, StepError> {
-        let path = std::env::temp_dir().join(format!("upglow-readme-{}", std::process::id()));
+        let path = std::env::temp_dir().join(format!("upglow-guide-{}", std::process::id()));
         fs::create_dir(&path).map_err(StepError::file(&path))?;
         Ok(Self(path))
     }
@@ -56,9 +59,9 @@ impl Drop for TemporaryFolder {
     }
 }
 
-/// The marked examples of a README, in order.
-fn examples(readme: &str) -> Result<Vec<Example>, StepError> {
-    let mut lines = readme.lines().enumerate().map(|(i, line)| (i + 1, line));
+/// The marked examples of the page, in order.
+fn examples(page: &str) -> Result<Vec<Example>, StepError> {
+    let mut lines = page.lines().enumerate().map(|(i, line)| (i + 1, line));
     let mut found = Vec::new();
     while let Some((line, text)) = lines.next() {
         if text.trim() != MARKER {
@@ -85,9 +88,9 @@ fn examples(readme: &str) -> Result<Vec<Example>, StepError> {
     Ok(found)
 }
 
-/// A problem at a line of the README.
+/// A problem at a line of the page.
 fn at(line: usize, problem: &str) -> StepError {
-    StepError::found(format!("README.md, line {line}: {problem}"))
+    StepError::found(format!("{PAGE}, line {line}: {problem}"))
 }
 
 /// The lines up to the closing fence, which is consumed.
@@ -143,7 +146,7 @@ fn run(example: &Example, folder: &Path, bin_dir: &Path) -> Result<(), StepError
     } else if expected.is_empty() || lines_match(&expected, &printed.lines().collect::<Vec<_>>()) {
         return Ok(());
     } else {
-        "printed something else than the README shows"
+        "printed something else than the page shows"
     };
     let messages = String::from_utf8_lossy(&ran.stderr);
     Err(at(*line, &format!("the command\n$ {script}\n{problem}\n{printed}{messages}")))
@@ -189,33 +192,33 @@ mod tests {
 
     #[test]
     fn only_marked_blocks_are_examples() {
-        let readme = "```sh\nrm x\n```\n\n<!-- checked -->\n\n```sh\ntrue\nfalse\n```\n";
+        let page = "```sh\nrm x\n```\n\n<!-- checked -->\n\n```sh\ntrue\nfalse\n```\n";
         let expected = Example { line: 8, script: "true\nfalse".to_owned(), output: Vec::new() };
-        assert_eq!(examples(readme).unwrap(), [expected]);
+        assert_eq!(examples(page).unwrap(), [expected]);
     }
 
     #[test]
-    fn a_readme_without_markers_has_no_examples() {
+    fn a_page_without_markers_has_no_examples() {
         assert_eq!(examples("# upglow\n").unwrap(), []);
     }
 
     #[test]
     fn console_blocks_hold_commands_and_their_output() {
-        let readme = "<!-- checked -->\n```console\n$ echo a \\\n    b\na b\n$ true\n```\n";
-        let found = examples(readme).unwrap();
+        let page = "<!-- checked -->\n```console\n$ echo a \\\n    b\na b\n$ true\n```\n";
+        let found = examples(page).unwrap();
         assert_eq!(found.len(), 2);
         assert_eq!(found[0].script, "echo a \\\n    b");
         assert_eq!(found[0].output, ["a b"]);
         assert_eq!((found[1].line, found[1].script.as_str()), (6, "true"));
     }
 
-    fn error_of(readme: &str) -> String {
-        examples(readme).unwrap_err().to_string()
+    fn error_of(page: &str) -> String {
+        examples(page).unwrap_err().to_string()
     }
 
     #[test]
     fn a_marker_that_marks_nothing_is_an_error() {
-        let error = "README.md, line 1: '<!-- checked -->' marks nothing";
+        let error = "docs/guide.md, line 1: '<!-- checked -->' marks nothing";
         assert!(error_of("<!-- checked -->\ntext\n").starts_with(error));
         assert!(error_of("<!-- checked -->\n```text\n```\n").starts_with(error));
     }
@@ -223,9 +226,9 @@ mod tests {
     #[test]
     fn a_block_without_end_or_command_is_an_error() {
         let unclosed = error_of("<!-- checked -->\n```sh\ntrue\n");
-        assert!(unclosed.starts_with("README.md, line 2: the block has no end"), "{unclosed}");
+        assert!(unclosed.starts_with("docs/guide.md, line 2: the block has no end"), "{unclosed}");
         let no_command = error_of("<!-- checked -->\n```console\nout\n```\n");
-        assert!(no_command.starts_with("README.md, line 2: the block starts with output"));
+        assert!(no_command.starts_with("docs/guide.md, line 2: the block starts with output"));
     }
 
     #[test]
@@ -248,7 +251,7 @@ mod tests {
         let here = Path::new(".");
         assert!(run(&example("echo yes", &["yes"]), here, here).is_ok());
         let other = run(&example("echo no", &["yes"]), here, here).unwrap_err().to_string();
-        assert!(other.contains("something else than the README shows\nno\n"), "{other}");
+        assert!(other.contains("something else than the page shows\nno\n"), "{other}");
         let failed = run(&example("false; true", &[]), here, here).unwrap_err().to_string();
         assert!(failed.contains("$ false; true\nfailed"), "{failed}");
     }
