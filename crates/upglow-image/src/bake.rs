@@ -183,7 +183,13 @@ impl<'c> Baker<'c> {
     /// # Errors
     ///
     /// [`BakeError`]; `output` is then as it was.
-    pub fn bake(&self, input: &Path, output: &Path, watch: &dyn Watch) -> Result<Baked, BakeError> {
+    pub fn bake(
+        &self,
+        input: impl AsRef<Path>,
+        output: impl AsRef<Path>,
+        watch: &dyn Watch,
+    ) -> Result<Baked, BakeError> {
+        let input = input.as_ref();
         let mut picture = self.open(input)?;
         let size = picture.picture().size();
         let table = self.options.repair.map(|_| StandingTable::new(self.cube.contract()));

@@ -35,15 +35,24 @@ pub use self::report::{CheckReport, Counts, Flaw, FlawedTexel, WorstTexel};
 ///
 /// # Examples
 ///
-/// ```no_run
-/// use upglow_color::Contract;
+/// ```
+/// use upglow_color::{Contract, RgbSpace};
 /// use upglow_fit::Unwatched;
-/// use upglow_image::{Assumed, Checker};
+/// use upglow_image::{Assumed, Checker, ExrDescription, ExrWriter};
+///
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("three.exr");
+/// let three = ExrDescription::new([3, 1], ["R", "G", "B"]).with_space(&RgbSpace::default());
+/// let mut writer = ExrWriter::create(&path, three)?;
+/// writer.write_band(&[&[0.5, 0.9, 0.0], &[0.4, 0.0, 1.0], &[0.3, 0.9, 0.0]])?;
+/// writer.finish()?;
 ///
 /// let mut checker = Checker::new(Contract::default(), Assumed::default());
-/// let report = checker.check("wall.exr".as_ref(), &Unwatched)?;
-/// println!("{} texels need fluorescence", report.counts.needs_fluorescence);
-/// # Ok::<(), upglow_image::CheckError>(())
+/// let report = checker.check(&path, &Unwatched)?;
+/// assert_eq!(report.counts.reflectance, 1);
+/// assert_eq!(report.counts.needs_fluorescence, 1);
+/// assert_eq!(report.counts.unreachable, 1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug)]
 pub struct Checker<'c> {
@@ -104,7 +113,12 @@ impl<'c> Checker<'c> {
     /// # Errors
     ///
     /// [`CheckError`] if it cannot be read or the watcher stops.
-    pub fn check(&mut self, input: &Path, watch: &dyn Watch) -> Result<CheckReport, CheckError> {
+    pub fn check(
+        &mut self,
+        input: impl AsRef<Path>,
+        watch: &dyn Watch,
+    ) -> Result<CheckReport, CheckError> {
+        let input = input.as_ref();
         let mut picture = LinearPicture::open(input, &self.assumed)?;
         let size = picture.picture().size();
         let limits = self.limits(&picture);
@@ -188,10 +202,9 @@ fn worst(table: &StandingTable, display: &Display, findings: &Findings) -> Vec<W
             WorstTexel { x, y, rgb, standing, swatches }
         })
         .collect();
+    let beyond = |texel: &WorstTexel| texel.standing.beyond().distance;
     all.sort_by(|a, b| {
-        let [worse, better] = [b.standing, a.standing];
-        let [far, near] = [worse, better].map(|standing| standing.beyond().distance);
-        let worse = worse.kind.cmp(&better.kind).then(far.total_cmp(&near));
+        let worse = b.standing.kind.cmp(&a.standing.kind).then(beyond(b).total_cmp(&beyond(a)));
         worse.then((a.y, a.x).cmp(&(b.y, b.x)))
     });
     all.truncate(Checker::WORST);
@@ -277,7 +290,7 @@ mod tests {
                 .collect();
             assert!(!places.is_empty() && flawed.starts_with(&places), "{flaw:?} {places:?}");
         }
-        // The first of them counts twice: it is no number, and above 1.
+        // The first of them counts twice: it is NaN, and above 1.
         assert!(Flaw::NotANumber.is_in(rgb[0]) && Flaw::AboveOne.is_in(rgb[0]));
     }
 

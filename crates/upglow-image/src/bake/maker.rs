@@ -14,7 +14,10 @@ pub(super) trait Maker: Debug + Sync {
     /// What the file says besides.
     fn attributes(&self) -> Attributes;
 
-    fn compression(&self) -> Compression;
+    /// How the file is packed.
+    fn compression(&self) -> Compression {
+        Compression::Zip
+    }
 
     /// Whether the channels are light, which OpenEXR has multiplied by alpha, and not properties of
     /// a material.

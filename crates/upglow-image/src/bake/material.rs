@@ -1,4 +1,4 @@
-//! The parameters of one material a texel.
+//! The parameters of one material per texel.
 
 use half::f16;
 use upglow::{Cube, Model, Node};
@@ -8,7 +8,6 @@ use super::attributes;
 use super::maker::Maker;
 use crate::exr::attribute::Attributes;
 use crate::exr::header::Sample;
-use crate::exr::writer::Compression;
 
 /// Three numbers of the reflectance and, where the model fluoresces, three of that.
 #[derive(Debug)]
@@ -77,10 +76,6 @@ impl Maker for MaterialMaker<'_> {
         attributes
     }
 
-    fn compression(&self) -> Compression {
-        Compression::Zip
-    }
-
     fn fill(&self, rgb: &[[f32; 3]], planes: &mut [&mut [f32]]) {
         let mut nodes = vec![Node::default(); rgb.len()];
         let made = if self.is_polished {
@@ -129,7 +124,7 @@ fn towards_zero(value: f32) -> f32 {
     f16::from_bits(nearest.to_bits() - 1).to_f32()
 }
 
-/// The node whose numbers a texel holds; the color difference is not among them.
+/// The node of a texel's numbers; the color difference is not among them.
 pub(super) fn node_of(values: [f32; 6], model: &Model) -> Node {
     let [edge, level, slope_per_nm, a, b, c] = values;
     let reflectance = [edge + ORIGIN_NM, level, slope_per_nm];

@@ -9,7 +9,7 @@ use super::material::{channel_names, node_of};
 use crate::exr::reader::ExrReader;
 use crate::spectral::error::FormError;
 
-/// A file of one material a texel, as `docs/material-exr.md` describes it, opened for reading.
+/// A file of one material per texel, as `docs/material-exr.md` describes it, opened for reading.
 #[derive(Debug)]
 pub struct MaterialPicture {
     reader: ExrReader,

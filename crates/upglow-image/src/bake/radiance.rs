@@ -7,7 +7,6 @@ use upglow_color::{Grid, Illuminant, Matrix3};
 use super::attributes;
 use super::maker::Maker;
 use crate::exr::attribute::{Attribute, Attributes};
-use crate::exr::writer::Compression;
 
 /// Linear RGB, in the cube's space, of the blend of each texel under a light.
 #[derive(Debug)]
@@ -61,10 +60,6 @@ impl Maker for RadianceMaker<'_> {
         attributes.insert("upglow.light".into(), self.light.name().into());
         attributes.insert("upglow.white".into(), Attribute::Float3(self.white.map(to_single)));
         attributes
-    }
-
-    fn compression(&self) -> Compression {
-        Compression::Zip
     }
 
     fn is_light(&self) -> bool {

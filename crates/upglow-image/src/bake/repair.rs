@@ -7,7 +7,7 @@ use upglow_fit::StandingTable;
 
 /// What to do with texels that cannot be baked as they are.
 ///
-/// With each, a texel with a value that is not a number or infinite becomes black, and is counted.
+/// With each, a texel with a value that is NaN or infinite becomes black, and is counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Repair {
@@ -36,7 +36,7 @@ pub(super) struct Repairer<'a> {
 pub(super) struct Repaired {
     /// Texels that are not what they were, those made black among them.
     pub(super) changed: u64,
-    /// Texels with a value that was not a number or infinite, made black.
+    /// Texels with a value that was NaN or infinite, made black.
     made_black: u64,
 }
 

@@ -14,7 +14,7 @@ pub(super) enum Heat {
     Fluorescence(f64),
     /// The furthest texel is this many ΔE00 beyond any material.
     Unreachable(f64),
-    /// A value is not a number or infinite.
+    /// A value is NaN or infinite.
     NoColor,
 }
 

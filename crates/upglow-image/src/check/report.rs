@@ -49,7 +49,7 @@ impl CheckReport {
 
 /// How many texels are what.
 ///
-/// The first three and those with a value that is not a number or infinite add up to all texels. The
+/// The first three and those with a value that is NaN or infinite add up to all texels. The
 /// last four count texels with such a value in any channel: one texel may count in more than one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
@@ -61,7 +61,7 @@ pub struct Counts {
     pub needs_fluorescence: u64,
     /// No material shows them.
     pub unreachable: u64,
-    /// No colors: a value is not a number or infinite.
+    /// Not colors: a value is NaN or infinite.
     pub no_color: u64,
     /// Texels with each flaw, in the order of [`Flaw::ALL`].
     flawed: [u64; Flaw::ALL.len()],
@@ -186,7 +186,7 @@ pub struct FlawedTexel {
     pub rgb: [f32; 3],
 }
 
-/// Two are equal if they have the same bits: a value may be not a number.
+/// Two are equal if they have the same bits: a value may be NaN.
 impl PartialEq for FlawedTexel {
     fn eq(&self, other: &Self) -> bool {
         let bits = |texel: &Self| texel.rgb.map(f32::to_bits);

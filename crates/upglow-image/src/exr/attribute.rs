@@ -108,12 +108,6 @@ impl From<String> for Attribute {
     }
 }
 
-impl From<f32> for Attribute {
-    fn from(value: f32) -> Self {
-        Self::Float(value)
-    }
-}
-
 /// `N` single-precision numbers, little endian; `None` if the bytes are not that many.
 fn singles<const N: usize>(bytes: &[u8]) -> Option<[f32; N]> {
     let (words, rest) = bytes.as_chunks::<4>();

@@ -501,7 +501,7 @@ mod tests {
         let channels = vec![channel("B", Sample::Half), channel("Z", Sample::Float)];
         let attributes = Attributes::from([
             ("owner".into(), "me".into()),
-            ("a name of more than thirty-one letters".into(), 2.5.into()),
+            ("a name of more than thirty-one letters".into(), Attribute::Float(2.5)),
         ]);
         let display = Window::of_size([7, 9]);
         let data = Window { min: [-1, 2], max: [3, 8] };

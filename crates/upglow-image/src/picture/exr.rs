@@ -16,7 +16,7 @@ use crate::exr::reader::ExrReader;
 #[derive(Debug)]
 pub(super) struct ExrPicture {
     reader: ExrReader,
-    /// Numbers of red, green and blue; thrice the same for gray.
+    /// Numbers of red, green and blue; three times the same for gray.
     colors: [usize; 3],
     alpha: Option<usize>,
 }

@@ -6,7 +6,7 @@ pub(crate) fn print_spectrum(wavelengths_nm: &[f64], values: &[f64]) -> String {
     pairs.map(|(nm, value)| format!("{nm}nm:{value};")).collect()
 }
 
-/// Wavelengths in nm and values of such a text; `None` if it is none or empty.
+/// Wavelengths in nm and values of such a text; `None` if it is empty or not a spectrum.
 pub(crate) fn parse_spectrum(text: &str) -> Option<(Vec<f64>, Vec<f64>)> {
     let pairs = text.strip_suffix(';').unwrap_or(text).split(';').map(|pair| {
         let (nm, value) = pair.split_once(':')?;

@@ -61,29 +61,8 @@ pub(crate) enum SpectralNameError {
     Count { found: usize, expected: &'static str },
 }
 
-/// SI prefixes and the powers of ten they stand for; the two-letter one first.
-const PREFIXES: [(&str, i32); 20] = [
-    ("da", 1),
-    ("Y", 24),
-    ("Z", 21),
-    ("E", 18),
-    ("P", 15),
-    ("T", 12),
-    ("G", 9),
-    ("M", 6),
-    ("k", 3),
-    ("h", 2),
-    ("d", -1),
-    ("c", -2),
-    ("m", -3),
-    ("u", -6),
-    ("n", -9),
-    ("p", -12),
-    ("f", -15),
-    ("a", -18),
-    ("z", -21),
-    ("y", -24),
-];
+/// SI prefixes of a thousand, a million and on, and of a thousandth, a millionth and on.
+const LARGE_AND_SMALL: [&str; 2] = ["kMGTPEZY", "munpfazy"];
 
 /// Speed of light in vacuum, m/s: exact by definition.
 const LIGHT_M_PER_S: f64 = 299_792_458.0;
@@ -161,13 +140,7 @@ fn wavelength_nm(text: &str) -> Result<f64, SpectralNameError> {
     if number.is_empty() {
         return Err(SpectralNameError::NoNumber { unit: unit.into() });
     }
-    let power = |base: &str| {
-        let prefix = unit.strip_suffix(base)?;
-        if prefix.is_empty() {
-            return Some(0);
-        }
-        PREFIXES.iter().find(|(known, _)| *known == prefix).map(|(_, power)| *power)
-    };
+    let power = |base: &str| prefix_power(unit.strip_suffix(base)?);
     let nm = match (power("Hz"), power("m")) {
         (Some(power), _) => parse(number, power).map(|hz| LIGHT_M_PER_S / hz * 1e9),
         (None, Some(power)) => parse(number, power + NANO),
@@ -175,6 +148,20 @@ fn wavelength_nm(text: &str) -> Result<f64, SpectralNameError> {
     };
     nm.filter(|nm| nm.is_finite() && *nm > 0.0)
         .ok_or_else(|| SpectralNameError::Number { number: number.into() })
+}
+
+/// The power of ten that an SI prefix stands for.
+fn prefix_power(prefix: &str) -> Option<i32> {
+    let [thousands, thousandths] = LARGE_AND_SMALL
+        .map(|letters| (1..).zip(letters.chars()).find(|(_, c)| prefix.chars().eq([*c])));
+    match prefix {
+        "" => Some(0),
+        "da" => Some(1),
+        "h" => Some(2),
+        "d" => Some(-1),
+        "c" => Some(-2),
+        _ => thousands.map(|(n, _)| 3 * n).or(thousandths.map(|(n, _)| -3 * n)),
+    }
 }
 
 /// Splits at the unit; an exponent, as in `5,5e2nm`, belongs to the number.

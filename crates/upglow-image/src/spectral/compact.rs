@@ -1,4 +1,4 @@
-//! The compact bispectral form: one reflectance a band, one map a dye, and the curves once.
+//! The compact bispectral form: one reflectance per band, one map per dye, and the curves once.
 //!
 //! `docs/spectral-exr.md` describes it for readers in other languages.
 
@@ -22,7 +22,7 @@ pub(crate) enum CompactForm {
     /// whose dyes are pooled or not, and for every mixture where each dye acts for itself; there maps
     /// may also be filtered.
     PerDye,
-    /// Four pairs of maps: where on the ring of dyes a material stands, and how strong it is.
+    /// Four pairs of maps: the position of a material on the ring of dyes, and its strength.
     /// Exact for every mixture of a look-up, of any ring; needs float samples and no filter.
     PerLobe,
 }
