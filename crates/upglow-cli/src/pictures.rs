@@ -59,7 +59,7 @@ fn is_picture(path: &Path) -> bool {
 }
 
 /// Where what is made of each input goes: to the file `output` for one picture, if that ends in
-/// `exr` and is no folder; else into the folder `output`, named after the picture and `form`, so
+/// `exr` and is not a folder; else into the folder `output`, named after the picture and `form`, so
 /// that the tile number of a UDIM stays where it was.
 pub(crate) fn outputs(
     inputs: &[PathBuf],
@@ -70,9 +70,10 @@ pub(crate) fn outputs(
     if is_picture(output) && !output.is_dir() {
         return match inputs.len() {
             1 if is_exr => Ok(vec![output.to_owned()]),
-            1 => {
-                Err(Failure::file(output, "no EXR, expected a file that ends in exr, or a folder"))
-            }
+            1 => Err(Failure::file(
+                output,
+                "not an EXR, expected a file that ends in exr, or a folder",
+            )),
             count => Err(Failure::file(
                 output,
                 format!("one file for {count} pictures, expected a folder"),

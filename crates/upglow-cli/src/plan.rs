@@ -65,7 +65,7 @@ pub(crate) fn light(option: &str, text: &str) -> Result<Illuminant, Failure> {
     named_or_read(option, text, "power", Illuminant::named, Illuminant::from_csv)
 }
 
-/// What a built-in name says, else the CSV file at that path, which is called like itself.
+/// The built-in value of this name, or the one in the CSV file at this path, named after the file.
 fn named_or_read<T, E: Error + Send + Sync + 'static>(
     option: &str,
     text: &str,
@@ -85,7 +85,7 @@ fn named_or_read<T, E: Error + Send + Sync + 'static>(
     }
 }
 
-/// Whether a word that is no built-in name is meant as a file or folder.
+/// Whether a word that is not a built-in name is meant as a file or folder.
 fn is_path(path: &Path) -> bool {
     path.exists() || path.components().count() > 1 || path.extension().is_some()
 }

@@ -115,7 +115,11 @@ fn a_material_is_baked_and_read_back() {
     folder.done("bake cube tile.exr -o fast.exr --fast --sample float");
     let run = folder.run("lint tile.material.exr");
     assert_eq!(run.status, 1);
-    assert!(run.stdout.contains("baked as:     material, which is no spectral"), "{}", run.stdout);
+    assert!(
+        run.stdout.contains("baked as:     material, which is not a spectral"),
+        "{}",
+        run.stdout
+    );
     assert_eq!(
         one_line(&run.stderr),
         "tile.material.exr: broken, expected a well-formed spectral EXR"
@@ -249,7 +253,10 @@ fn pictures_that_are_refused() {
         ("bake cube tile.exr -o ./tile.exr", "./tile.exr: the picture tile.exr itself, expected"),
         ("check tile.exr -o tile.exr", "tile.exr: the picture tile.exr itself, expected"),
         ("check tile.exr --cube cube -o cube", "cube: the cube itself, expected another file"),
-        ("bake cube tile.exr -o tile.png", "tile.png: no EXR, expected a file that ends in exr"),
+        (
+            "bake cube tile.exr -o tile.png",
+            "tile.png: not an EXR, expected a file that ends in exr",
+        ),
         ("read tile.exr --at 0,0", "tile.exr: no spectral channel, expected names as T.550"),
     ];
     for (words, line) in cases {

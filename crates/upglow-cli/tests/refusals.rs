@@ -13,7 +13,7 @@ fn folder_with_cube() -> Folder {
 }
 
 #[test]
-fn colors_that_are_none() {
+fn invalid_colors() {
     let folder = folder_with_cube();
     let cases = [
         ("NaN 0 0", "R: NaN, expected 0 to 1"),
@@ -37,7 +37,7 @@ fn colors_that_are_none() {
 }
 
 #[test]
-fn files_that_are_no_cubes() {
+fn files_that_are_not_cubes() {
     let folder = folder_with_cube();
     folder.write("text", "red green blue");
     folder.write("empty", "");
@@ -77,7 +77,7 @@ fn a_cube_cut_short_or_altered() {
 }
 
 #[test]
-fn dyes_that_are_none() {
+fn invalid_dyes() {
     let good = dye(500);
     let line_of = |nm: u32| good.lines().find(|line| line.starts_with(&format!("{nm},"))).unwrap();
     let without = |nm: u32| good.replace(&format!("{}\n", line_of(nm)), "");
@@ -107,7 +107,7 @@ fn dyes_that_are_none() {
 }
 
 #[test]
-fn lights_that_are_none() {
+fn invalid_lights() {
     let folder = Folder::new();
     folder.write("dark.csv", curves("power", |_| "0".into()));
     let line = folder.refused(1, "build --illuminant dark.csv -o cube");
@@ -126,7 +126,7 @@ fn a_light_of_one_nanometer_that_sums_over_five_miss() {
 }
 
 #[test]
-fn observers_that_are_none() {
+fn invalid_observers() {
     let folder = Folder::new();
     let build = |text: &str| {
         folder.write("eye.csv", text);

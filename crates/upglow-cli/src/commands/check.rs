@@ -98,7 +98,7 @@ impl Report for PictureReport {
             .add("judged as", format_args!("{rgb_space} under {illuminant}"))
             .add("reflectance shows", share(counts.reflectance))
             .add("fluorescence needed", share(counts.needs_fluorescence))
-            .add("nothing shows", share(counts.unreachable));
+            .add("no material shows", share(counts.unreachable));
         let flaws = Flaw::ALL.map(|flaw| (flaw.to_string(), counts.of(flaw)));
         let counts = [("no colors".into(), counts.no_color)].into_iter().chain(flaws);
         for (name, count) in counts.filter(|(_, count)| *count > 0) {

@@ -10,7 +10,8 @@ use super::material_report::{ReflectanceReport, dye_names};
 use crate::output::{Lines, Side, Table, triple};
 use crate::plot::Curves;
 
-/// Beyond this a miss shows beside the color itself; smaller would cry over what nobody sees.
+/// A difference above this is visible when both colors are side by side. Smaller would mark misses
+/// that are not visible.
 const VISIBLE_DE2000: f64 = 1.0;
 
 #[derive(Debug, Serialize)]
@@ -254,7 +255,7 @@ impl ColorReport<'_> {
         format!(
             "{table}\
              RGB is linear {space}, adaptation {adaptation}. White is Y = 1 under each light but the\n\
-             lamp, which has as much power as {own} and is seen by an eye adapted to {own}.\n"
+             lamp, which has as much power as {own} and is seen by an observer adapted to {own}.\n"
         )
     }
 }

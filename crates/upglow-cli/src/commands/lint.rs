@@ -66,7 +66,7 @@ impl Report for LintReport {
         let mut lines = Lines::default();
         lines.add("file", &self.file);
         if let Some(form) = self.baked_as.as_deref().filter(|form| *form != "spectral") {
-            lines.add("baked as", format_args!("{form}, which is no spectral picture"));
+            lines.add("baked as", format_args!("{form}, which is not a spectral picture"));
         }
         lines.add("channels", kinds);
         for finding in findings {
