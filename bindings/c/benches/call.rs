@@ -69,7 +69,7 @@ impl Random {
 }
 
 fn cube(kind: Kind) -> Cube {
-    let set = DyeSet::named("seed8").expect("built in");
+    let set = DyeSet::named("konig8").expect("built in");
     let model = Model::Dyes(DyeModel::new(set, DyeOptions::default()).expect("valid"));
     let mut random = Random(7);
     let nodes = (0..RESOLUTION.pow(3)).map(|_| random.node(kind)).collect();
@@ -78,7 +78,7 @@ fn cube(kind: Kind) -> Cube {
 
 /// A cube as C sees it; it lives as long as the bench.
 fn handle(kind: Kind) -> *const UpglowCube {
-    let bytes = cube(kind).to_bytes().expect("valid");
+    let bytes = cube(kind).to_bytes();
     let mut handle = std::ptr::null_mut();
     // SAFETY: the pointers are those of a slice and of a variable.
     expect_ok(unsafe { upglow_cube_from_memory(bytes.as_ptr(), bytes.len(), &raw mut handle) });

@@ -121,7 +121,7 @@ pub unsafe extern "C" fn upglow_cube_open(
     guarded(|| {
         // SAFETY: the caller keeps this function's promise.
         let (path, output) = unsafe { (text(path, "path")?, Output::new(cube, "cube")?) };
-        let cube = Cube::read(file_path(path)?).map_err(Failure::Cube)?;
+        let cube = Cube::read(file_path(path)?)?;
         output.write(Box::into_raw(UpglowCube::new(cube)));
         Ok(())
     })

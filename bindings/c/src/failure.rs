@@ -6,7 +6,7 @@ use std::ffi::{CStr, c_char};
 use std::fmt::{self, Write};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use upglow::{LookupError, ReadCubeError};
+use upglow::{CubeFileError, LookupError, ReadCubeError};
 use upglow_color::{ContractError, IlluminantError};
 
 /// How a call ended. On any status but `UPGLOW_STATUS_OK` what the call would have written is
@@ -46,6 +46,8 @@ pub(crate) enum Failure {
     #[error("{argument} overlaps rgb, expected memory of its own")]
     Overlap { argument: &'static str },
     #[error(transparent)]
+    File(#[from] CubeFileError),
+    #[error(transparent)]
     Cube(#[from] ReadCubeError),
     #[error(transparent)]
     Lookup(#[from] LookupError),
@@ -59,8 +61,8 @@ impl Failure {
     fn status(&self) -> UpglowStatus {
         match self {
             Self::Null { .. } => UpglowStatus::NullPointer,
-            Self::Cube(ReadCubeError::Io(_)) => UpglowStatus::File,
-            Self::Cube(_) => UpglowStatus::NotACube,
+            Self::File(CubeFileError::Read { .. }) => UpglowStatus::File,
+            Self::File(_) | Self::Cube(_) => UpglowStatus::NotACube,
             Self::Lookup(_) => UpglowStatus::Outside,
             _ => UpglowStatus::InvalidArgument,
         }

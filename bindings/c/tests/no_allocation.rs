@@ -41,14 +41,14 @@ fn allocations(work: impl FnOnce()) -> usize {
 }
 
 fn bytes() -> Vec<u8> {
-    let set = DyeSet::named("seed8").expect("built in");
+    let set = DyeSet::named("konig8").expect("built in");
     let model = DyeModel::new(set, DyeOptions::default()).expect("valid");
     let edge = Edge { edge_nm: 550.0, level: 0.5, slope_per_nm: 0.005 };
     let fluorescence = Fluorescence::Dyes { first: 2, weight: 0.3, concentration: 0.8 };
     let nodes = vec![Node::new(edge, fluorescence, 0.0); 8];
     let (contract, record) = (Contract::default(), FitRecord::default());
     let cube = Cube::new(contract, Model::Dyes(model), record, 2, nodes).expect("valid");
-    cube.to_bytes().expect("valid")
+    cube.to_bytes()
 }
 
 fn open() -> *mut UpglowCube {

@@ -6,11 +6,11 @@ use std::sync::OnceLock;
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
-use upglow::{DyeCurves, LookupTable, Model, ReadCubeError, WriteCubeError};
+use upglow::{AsideError, CubeFileError, DyeCurves, LookupTable, Model};
 use upglow_fit::CubeSummary;
 
 use crate::contract::Contract;
-use crate::errors::{file_error, os_error, value_error};
+use crate::errors::{os_error, value_error};
 use crate::nodes::{Arrays, arrays};
 
 /// One material for each node of a grid over RGB.
@@ -53,9 +53,9 @@ impl Cube {
     /// Reads a cube's file.
     #[staticmethod]
     fn read(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        py.detach(|| upglow::Cube::read(&path)).map(Self::of).map_err(|error| match error {
-            ReadCubeError::Io(error) => os_error(&path, &error),
-            error => file_error(&path, error),
+        py.detach(|| upglow::Cube::read(path)).map(Self::of).map_err(|error| match error {
+            CubeFileError::Read { path, source } => os_error(&path, &source),
+            error => value_error(error),
         })
     }
 
@@ -67,15 +67,17 @@ impl Cube {
 
     /// Writes the cube's file, whole or not at all.
     fn write(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        py.detach(|| self.cube.write(&path)).map_err(|error| match error {
-            WriteCubeError::Io(error) => os_error(&path, &error),
+        py.detach(|| self.cube.write(path)).map_err(|error| match error {
+            CubeFileError::Write { path, source: AsideError::Io(source) } => {
+                os_error(&path, &source)
+            }
             error => value_error(error),
         })
     }
 
     /// The content of the cube's file.
     fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let content = py.detach(|| self.cube.to_bytes()).map_err(value_error)?;
+        let content = py.detach(|| self.cube.to_bytes());
         Ok(PyBytes::new(py, &content))
     }
 

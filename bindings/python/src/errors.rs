@@ -12,11 +12,6 @@ pub(crate) fn value_error(error: impl Display) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
-/// The content of a file is not what it should be.
-pub(crate) fn file_error(path: &Path, error: impl Display) -> PyErr {
-    value_error(format_args!("{}: {error}", path.display()))
-}
-
 /// A file cannot be read or written: `FileNotFoundError`, `PermissionError` and their like.
 pub(crate) fn os_error(path: &Path, error: &io::Error) -> PyErr {
     let text = error.to_string();

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use upglow::{Cube, ReadCubeError};
+use upglow::{Cube, CubeFileError};
 use upglow_terminal::Failure;
 
 pub(crate) use upglow_terminal::files::{check_output, make_folder, read_text, write};
@@ -12,7 +12,8 @@ const A_CUBE: &str = "a cube made by `upglow build`";
 /// Reads a cube, or says in one line why the file is none.
 pub(crate) fn read_cube(path: &Path) -> Result<Cube, Failure> {
     Cube::read(path).map_err(|error| match error {
-        ReadCubeError::Io(error) => Failure::system(path, &error, A_CUBE),
+        CubeFileError::Read { source, .. } => Failure::system(path, &source, A_CUBE),
+        CubeFileError::Content { source, .. } => Failure::file(path, source),
         error => Failure::file(path, error),
     })
 }

@@ -128,7 +128,7 @@ fn cube_of(reflectance: Edge) -> Vec<u8> {
     let node = Node::new(reflectance, Fluorescence::None, 0.0);
     let fit = FitRecord { slope_max_per_nm: Some(0.01), ..FitRecord::default() };
     let cube = Cube::new(Contract::default(), Model::Reflectance, fit, 2, vec![node; 8]);
-    cube.unwrap().to_bytes().unwrap()
+    cube.unwrap().to_bytes()
 }
 
 #[test]

@@ -177,7 +177,7 @@ fn command_lines_that_do_not_fit() {
             "--absorption-fwhm-nm: width 5 nm, expected 15 to 80 nm",
         ),
         (
-            "build --model reflectance --dyes seed8 -o x",
+            "build --model reflectance --dyes konig8 -o x",
             "--dyes: given with --model reflectance, expected --model dyes",
         ),
         (

@@ -26,7 +26,7 @@ fn bench_build(bencher: Bencher<'_, '_>, model: &Model, resolution: usize) {
 /// The default build at 32³ and 64³.
 #[divan::bench(args = [32, 64], sample_count = 3, sample_size = 1)]
 fn default(bencher: Bencher<'_, '_>, resolution: usize) {
-    bench_build(bencher, &dyes("seed8"), resolution);
+    bench_build(bencher, &dyes("konig8"), resolution);
 }
 
 /// Fourteen dyes instead of eight, 32³.

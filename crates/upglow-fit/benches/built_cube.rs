@@ -20,7 +20,7 @@ const CALLS: usize = 4096;
 const MATERIALS: usize = 1024;
 
 static TABLE: LazyLock<LookupTable> = LazyLock::new(|| {
-    let set = DyeSet::named("seed8").expect("built in");
+    let set = DyeSet::named("konig8").expect("built in");
     let model = Model::Dyes(DyeModel::new(set, DyeOptions::default()).expect("valid"));
     let cube = build_cube(&Contract::default(), &model, FitOptions::default(), 32, &Unwatched);
     cube.expect("nobody stops it").lookup_table()

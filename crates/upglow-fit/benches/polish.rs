@@ -33,7 +33,7 @@ const PICTURES: [Picture; 3] = [Picture::Srgb, Picture::Cube, Picture::Gradient]
 fn cube() -> &'static Cube {
     static CUBE: OnceLock<Cube> = OnceLock::new();
     CUBE.get_or_init(|| {
-        let set = DyeSet::named("seed8").expect("it is built in");
+        let set = DyeSet::named("konig8").expect("it is built in");
         let dyes = DyeModel::new(set, DyeOptions::default()).expect("the defaults are valid");
         let (contract, model) = (Contract::default(), Model::Dyes(dyes));
         build_cube(&contract, &model, FitOptions::default(), 32, &Unwatched)

@@ -11,7 +11,7 @@
 //! use upglow_color::{Contract, LinearRgb};
 //! use upglow_fit::{FitOptions, Fitter};
 //!
-//! let model = Model::Dyes(DyeModel::new(DyeSet::named("seed8")?, DyeOptions::default())?);
+//! let model = Model::Dyes(DyeModel::new(DyeSet::named("konig8")?, DyeOptions::default())?);
 //! let fitter = Fitter::new(&Contract::default(), &model, FitOptions::default())?;
 //! let magenta = fitter.fit(LinearRgb([0.9, 0.0, 0.9]))?;
 //! assert!(magenta.fluorescence.concentration() > 0.0);

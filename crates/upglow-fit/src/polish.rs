@@ -40,7 +40,7 @@ use texel::Texel;
 /// use upglow_color::Contract;
 /// use upglow_fit::{FitOptions, Polisher, Unwatched, build_cube};
 ///
-/// let model = Model::Dyes(DyeModel::new(DyeSet::named("seed8")?, DyeOptions::default())?);
+/// let model = Model::Dyes(DyeModel::new(DyeSet::named("konig8")?, DyeOptions::default())?);
 /// let options = FitOptions::default();
 /// let cube = build_cube(&Contract::default(), &model, options, 5, &Unwatched)?;
 /// let polisher = Polisher::new(&cube)?;

@@ -319,7 +319,7 @@ mod tests {
         for accounting in [Accounting::Energy, Accounting::Photon] {
             for mixing in [Mixing::Pooled, Mixing::Separate] {
                 let options = DyeOptions { accounting, mixing, ..DyeOptions::default() };
-                let dyes = DyeModel::new(DyeSet::named("seed8").unwrap(), options).unwrap();
+                let dyes = DyeModel::new(DyeSet::named("konig8").unwrap(), options).unwrap();
                 let model = Model::Dyes(dyes.clone());
                 let model = ModelOnGrid::new(&model, &colorimetry);
                 let sums = Sums::new(&model);

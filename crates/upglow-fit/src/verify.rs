@@ -235,7 +235,7 @@ mod tests {
             quantum_yield: QuantumYield::Measured,
             optical_density: Some(2.0),
         };
-        Model::Dyes(DyeModel::new(DyeSet::named("seed8").unwrap(), options).unwrap())
+        Model::Dyes(DyeModel::new(DyeSet::named("konig8").unwrap(), options).unwrap())
     }
 
     /// A flat reflectance of the mean for grays, an edge and a little fluorescence for the rest.

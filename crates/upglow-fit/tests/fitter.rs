@@ -13,8 +13,8 @@ use upglow_fit::{ColorError, Fit, FitOptions, Fitter};
 /// The limit of the default options, 1/nm.
 const SLOPE_LIMIT: f64 = 0.01;
 
-fn seed8(options: DyeOptions) -> Model {
-    Model::Dyes(DyeModel::new(DyeSet::named("seed8").unwrap(), options).unwrap())
+fn konig8(options: DyeOptions) -> Model {
+    Model::Dyes(DyeModel::new(DyeSet::named("konig8").unwrap(), options).unwrap())
 }
 
 fn fitter(model: &Model, options: FitOptions) -> Fitter {
@@ -37,7 +37,7 @@ fn assert_valid(model: &Model, fit: &Fit) {
 
 #[test]
 fn white_is_the_perfect_diffuser_and_black_gives_nothing_back() {
-    let model = seed8(DyeOptions::default());
+    let model = konig8(DyeOptions::default());
     for value in [1.0, 0.0] {
         let fit = fit(&model, [value; 3]);
         let mixture = Mixture::of(&model, fit.material());
@@ -48,7 +48,7 @@ fn white_is_the_perfect_diffuser_and_black_gives_nothing_back() {
 
 #[test]
 fn grays_are_flat_and_do_not_fluoresce() {
-    let model = seed8(DyeOptions::default());
+    let model = konig8(DyeOptions::default());
     for i in 0..=31 {
         let value = f64::from(i) / 31.0;
         let fit = fit(&model, [value; 3]);
@@ -59,7 +59,7 @@ fn grays_are_flat_and_do_not_fluoresce() {
 
 #[test]
 fn a_magenta_beyond_all_reflectances_is_shown_with_dyes() {
-    let model = seed8(DyeOptions::default());
+    let model = konig8(DyeOptions::default());
     let magenta = fit(&model, [0.9, 0.0, 0.9]);
     let passive = fit(&Model::Reflectance, [0.9, 0.0, 0.9]);
     assert!(magenta.fluorescence.concentration() > 0.0);
@@ -69,7 +69,7 @@ fn a_magenta_beyond_all_reflectances_is_shown_with_dyes() {
 
 #[test]
 fn a_measured_fluorescent_orange_brighter_than_white_is_shown_by_dense_dyes() {
-    let model = seed8(DyeOptions { optical_density: Some(4.0), ..DyeOptions::default() });
+    let model = konig8(DyeOptions { optical_density: Some(4.0), ..DyeOptions::default() });
     let orange = fit(&model, [1.58, 0.34, 0.05]);
     assert!(orange.de2000 <= 0.1, "{orange:?}");
     assert_valid(&model, &orange);
@@ -77,7 +77,7 @@ fn a_measured_fluorescent_orange_brighter_than_white_is_shown_by_dense_dyes() {
 
 #[test]
 fn pure_green_which_nothing_shows_still_gets_the_nearest_material() {
-    let model = seed8(DyeOptions::default());
+    let model = konig8(DyeOptions::default());
     let green = fit(&model, [0.0, 1.0, 0.0]);
     assert!(green.de2000 > 1.0 && green.de2000 < 30.0, "{green:?}");
     assert_valid(&model, &green);
@@ -100,7 +100,7 @@ fn what_is_no_color_is_refused_with_its_channel() {
 fn a_color_that_needs_little_fluorescence_gets_little() {
     // Between a color that reflectance shows and one that it does not, the concentration rises
     // from nothing without a jump to full strength.
-    let model = seed8(DyeOptions::default());
+    let model = konig8(DyeOptions::default());
     let fitter = fitter(&model, FitOptions::default());
     let at = |t: f64| fitter.fit(LinearRgb([0.5, 0.5 - 0.45 * t, 0.5])).unwrap();
     let fits: Vec<Fit> = (0..=40).map(|i| at(f64::from(i) / 40.0)).collect();
@@ -111,7 +111,7 @@ fn a_color_that_needs_little_fluorescence_gets_little() {
 
 #[test]
 fn every_metric_reaches_a_color_that_can_be_shown() {
-    let model = seed8(DyeOptions::default());
+    let model = konig8(DyeOptions::default());
     for &metric in Metric::ALL {
         let options = FitOptions { metric, ..FitOptions::default() };
         let fit = fitter(&model, options).fit(LinearRgb([0.2, 0.7, 0.4])).unwrap();
@@ -127,7 +127,7 @@ proptest! {
         let mut models = vec![Model::Reflectance, Model::Analytic(AnalyticModel::default())];
         for accounting in [Accounting::Energy, Accounting::Photon] {
             for mixing in [Mixing::Pooled, Mixing::Separate] {
-                models.push(seed8(DyeOptions { accounting, mixing, ..DyeOptions::default() }));
+                models.push(konig8(DyeOptions { accounting, mixing, ..DyeOptions::default() }));
             }
         }
         for model in models {

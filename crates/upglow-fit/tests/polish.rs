@@ -13,7 +13,7 @@ use upglow_fit::{FitOptions, Polisher, Unwatched, build_cube};
 const EXACT: f64 = 0.01;
 
 fn dyes(options: DyeOptions) -> Model {
-    Model::Dyes(DyeModel::new(DyeSet::named("seed8").unwrap(), options).unwrap())
+    Model::Dyes(DyeModel::new(DyeSet::named("konig8").unwrap(), options).unwrap())
 }
 
 fn models() -> [Model; 4] {

@@ -357,7 +357,7 @@ mod tests {
     fn a_cube_that_has_the_picture_as_nodes_shows_it_within_its_own_difference() {
         use upglow::{DyeModel, DyeOptions, DyeSet, Model};
         use upglow_fit::{FitOptions, Unwatched, build_cube};
-        let model = DyeModel::new(DyeSet::named("seed8").unwrap(), DyeOptions::default()).unwrap();
+        let model = DyeModel::new(DyeSet::named("konig8").unwrap(), DyeOptions::default()).unwrap();
         let contract = Contract::default();
         let model = Model::Dyes(model);
         let cube = build_cube(&contract, &model, FitOptions::default(), 3, &Unwatched).unwrap();

@@ -47,7 +47,7 @@ fn built(set: &str, resolution: usize) -> Cube {
 /// Ten nodes a side, in ACEScg under D65.
 fn cube() -> &'static Cube {
     static CUBE: OnceLock<Cube> = OnceLock::new();
-    CUBE.get_or_init(|| built("seed8", 10))
+    CUBE.get_or_init(|| built("konig8", 10))
 }
 
 fn colorimetry() -> &'static Colorimetry {

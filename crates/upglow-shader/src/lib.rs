@@ -22,6 +22,7 @@
 //!
 //! Out of scope: reading or writing files, talking to a driver, how surfaces scatter over angles.
 
+mod error;
 mod language;
 mod payload;
 mod shader;
@@ -30,5 +31,6 @@ mod textures;
 mod tiff;
 mod translation;
 
+pub use error::ShaderError;
 pub use language::Language;
-pub use shader::{PayloadFile, Shader, ShaderError};
+pub use shader::{PayloadFile, Shader};

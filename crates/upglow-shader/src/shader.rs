@@ -6,7 +6,8 @@ use upglow::{Accounting, AnalyticModel, Cube, Model};
 use upglow_color::Grid;
 use upglow_color::rounding::to_single;
 
-use crate::Language;
+use crate::error::ShaderError;
+use crate::language::Language;
 use crate::payload::{checksum, payload};
 use crate::template::functions;
 use crate::textures::{BINS, Texture, curves, nodes};
@@ -31,26 +32,6 @@ pub struct PayloadFile {
     pub name: String,
     /// What is in it.
     pub bytes: Vec<u8>,
-}
-
-/// Why a cube makes no shader.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum ShaderError {
-    /// A texture of this many nodes has more rows than drivers take.
-    #[error("resolution {found}, expected at most {most}: textures have up to 8192 rows")]
-    Resolution {
-        /// The cube's nodes along an axis.
-        found: usize,
-        /// Most that fit.
-        most: usize,
-    },
-    /// The name cannot stand in a file's name or a line of source text.
-    #[error("name {found:?}, expected letters, digits, '.', '-' or '_'")]
-    Name {
-        /// The name given.
-        found: String,
-    },
 }
 
 /// Wavelengths beyond are those of the end, nm: farther out, parabolas overflow.

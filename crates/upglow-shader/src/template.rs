@@ -2,7 +2,7 @@
 
 use upglow::{Accounting, Mixing, Model};
 
-use crate::Language;
+use crate::language::Language;
 
 const MATERIAL: &str = include_str!("templates/material.wgsl");
 const SHARE: &str = include_str!("templates/share.wgsl");

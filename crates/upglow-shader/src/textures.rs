@@ -1,10 +1,10 @@
 //! A cube's numbers as two textures of four floats a texel.
 
-use upglow::{Cube, DyeModel, Fluorescence, Material, Mixture, Model, Sigmoid};
+use upglow::{Cube, DyeModel};
 use upglow_color::rounding::to_single;
 use upglow_color::{Grid, Spectrum};
 
-use crate::ShaderError;
+use crate::error::ShaderError;
 
 /// Most texels along an axis that every driver takes: `WebGPU`'s own limit, and above what OpenGL ES
 /// and Direct3D 10 ask for.
@@ -68,20 +68,17 @@ fn dye_columns(dyes: &DyeModel, dye: usize) -> [Vec<[f64; 4]>; 2] {
         (0..=BINS).map(|i| [a[i], rise(a, i), e[i], rise(e, i)]).collect();
     let [area, emitted] = [integral(&curves.absorption), integral(&curves.emission)];
     let moment = moment_integral(&curves.absorption);
-    let numbers =
-        [curves.quantum_yield, curves.mean_emission_nm, returned_nm(dyes, dye), emitted[BINS]];
+    let numbers = [
+        curves.quantum_yield,
+        curves.mean_emission_nm,
+        curves.returned_nm(dyes.options().accounting),
+        emitted[BINS],
+    ];
     values.push(numbers);
     let mut integrals: Vec<[f64; 4]> =
         (0..=BINS).map(|i| [area[i], moment[i], emitted[i], 0.0]).collect();
     integrals.push([0.0; 4]);
     [values, integrals]
-}
-
-/// ∫ returned dλ of a dye by itself at concentration 1, nm.
-fn returned_nm(dyes: &DyeModel, first: usize) -> f64 {
-    let fluorescence = Fluorescence::Dyes { first, weight: 0.0, concentration: 1.0 };
-    let material = Material { reflectance: Sigmoid::flat(0.5), fluorescence };
-    Mixture::of(&Model::Dyes(dyes.clone()), material).returned_total_nm()
 }
 
 /// ∫ curve dλ up to each sample: trapezoids 1 nm wide.
@@ -117,7 +114,7 @@ mod tests {
 
     #[test]
     fn integrals_of_a_curve_are_those_of_its_polygon() {
-        let dyes = DyeModel::new(DyeSet::named("seed8").unwrap(), DyeOptions::default()).unwrap();
+        let dyes = DyeModel::new(DyeSet::named("konig8").unwrap(), DyeOptions::default()).unwrap();
         for curves in dyes.curves() {
             let a = &curves.absorption;
             // Rounding of sums of 530 terms.
@@ -133,7 +130,7 @@ mod tests {
 
     #[test]
     fn the_ring_has_a_pair_of_columns_a_dye_and_a_row_of_numbers() {
-        let dyes = DyeModel::new(DyeSet::named("seed8").unwrap(), DyeOptions::default()).unwrap();
+        let dyes = DyeModel::new(DyeSet::named("konig8").unwrap(), DyeOptions::default()).unwrap();
         let texture = curves(&dyes);
         assert_eq!([texture.width, texture.height()], [16, 532]);
         let numbers = texture.texels[531 * 16 + 2 * 3];

@@ -4,7 +4,7 @@
 //! numbers and structs, functions, `if`, `for`, and the functions of numbers that share a name. What
 //! is left to change is the order of names and types, and a few words.
 
-use crate::Language;
+use crate::language::Language;
 
 /// `wgsl` in `language`, line by line.
 pub(crate) fn translate(wgsl: &str, language: Language) -> String {

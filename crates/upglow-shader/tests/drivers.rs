@@ -76,7 +76,7 @@ fn models() -> Vec<Model> {
             for optical_density in [None, Some(4.0)] {
                 let quantum_yield = QuantumYield::Measured;
                 let options = DyeOptions { accounting, mixing, quantum_yield, optical_density };
-                let set = DyeSet::named("seed8").unwrap();
+                let set = DyeSet::named("konig8").unwrap();
                 models.push(Model::Dyes(DyeModel::new(set, options).unwrap()));
             }
         }

@@ -7,6 +7,7 @@ use tempfile::NamedTempFile;
 
 /// A file written aside, beside its place, and renamed when it is whole; dropped before, it leaves
 /// nothing, and what stood at its place stays.
+#[must_use = "a file that is not committed is not written"]
 #[derive(Debug)]
 pub struct Aside {
     file: BufWriter<NamedTempFile>,

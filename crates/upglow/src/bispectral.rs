@@ -1,7 +1,5 @@
 //! What a material answers to a renderer.
 
-use crate::sampling::Sample;
-
 /// A material that reflects and re-radiates: [`crate::Mixture`] in double precision,
 /// [`crate::PackedMixture`] in single.
 ///
@@ -18,14 +16,20 @@ use crate::sampling::Sample;
 /// use upglow::{Bispectral, Draw, DyeModel, DyeOptions, DyeSet, Fluorescence};
 /// use upglow::{Material, Mixture, Model, Sigmoid};
 ///
-/// let model = Model::Dyes(DyeModel::new(DyeSet::named("seed8")?, DyeOptions::default())?);
+/// let model = Model::Dyes(DyeModel::new(DyeSet::named("konig8")?, DyeOptions::default())?);
 /// let fluorescence = Fluorescence::Dyes { first: 2, weight: 0.5, concentration: 0.8 };
 /// let reflectance = Sigmoid::flat(0.5);
 /// let mixture = Mixture::of(&model, Material { reflectance, fluorescence });
 /// let sample = mixture.sample_incident(540.0, [0.9, 0.5]).ok_or("absorbs everything")?;
 /// if let Draw::Fluorescent { per_nm } = sample.draw {
+///     // The balance heuristic weighs this draw against one from the light's side.
+///     let from_light_per_nm = mixture.outgoing_pdf_per_nm(sample.nm, 540.0);
+///     let weight = per_nm / (per_nm + from_light_per_nm);
+///     assert!(weight > 0.0 && weight <= 1.0);
 ///     assert_eq!(per_nm, mixture.incident_pdf_per_nm(sample.nm, 540.0));
 /// }
+/// let sample = mixture.sample_outgoing(500.0, [0.1, 0.5]).ok_or("absorbs everything")?;
+/// assert!(sample.throughput <= mixture.albedo(500.0));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub trait Bispectral {
@@ -79,4 +83,33 @@ pub trait Bispectral {
 
     /// The probability, 0..=1, that [`Bispectral::sample_outgoing`] keeps the wavelength.
     fn outgoing_elastic_probability(&self, in_nm: Self::Real) -> Self::Real;
+}
+
+/// A wavelength drawn from a material, in double or single precision.
+#[must_use]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample<T> {
+    /// The wavelength drawn, nm.
+    pub nm: T,
+    /// Factor of the path's throughput: what the material carries at the known wavelength divided
+    /// by the density (elastic: the probability) of the one drawn; the same for every sample.
+    pub throughput: T,
+    /// How the wavelength was drawn and how likely it was.
+    pub draw: Draw<T>,
+}
+
+/// How a wavelength was drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Draw<T> {
+    /// The wavelength was kept.
+    Elastic {
+        /// How likely that was, 0..=1.
+        probability: T,
+    },
+    /// The wavelength was changed.
+    Fluorescent {
+        /// The density of the wavelength drawn, 1/nm; over all of them it adds up to 1 less the
+        /// probability of the elastic draw.
+        per_nm: T,
+    },
 }

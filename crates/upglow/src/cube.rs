@@ -3,12 +3,43 @@
 use upglow_color::rounding::to_single;
 use upglow_color::{Contract, LinearRgb};
 
-use crate::interpolation::tetrahedron;
-use crate::{Edge, Fluorescence, Interpolation, Material, Mixture, Model};
+pub(crate) mod coefficient_table;
+pub(crate) mod error;
+pub(crate) mod file;
+mod header;
+pub(crate) mod interpolation;
+
+use crate::material::edge::Edge;
+use crate::material::mixture::Mixture;
+use crate::material::model::Model;
+use crate::material::{Fluorescence, Material};
+use interpolation::{Interpolation, tetrahedron};
 
 /// Materials for every node of a regular grid over linear RGB 0..=1, in single precision.
 ///
 /// Nodes are `[blue][green][red]`; node i of an axis of n stands for i / (n − 1).
+///
+/// # Examples
+///
+/// A file is written, read and looked up:
+///
+/// ```
+/// use upglow::{Bispectral, Cube, Edge, FitRecord, Fluorescence, Interpolation, Model, Node};
+/// use upglow_color::{Contract, LinearRgb};
+///
+/// let gray = Edge { edge_nm: 550.0, level: 0.0, slope_per_nm: 0.0 };
+/// let nodes = vec![Node::new(gray, Fluorescence::None, 0.0); 8];
+/// let cube = Cube::new(Contract::default(), Model::Reflectance, FitRecord::default(), 2, nodes)?;
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("gray.safetensors");
+/// cube.write(&path)?;
+///
+/// let cube = Cube::read(&path)?;
+/// let mixture = cube.lookup(LinearRgb([0.2, 0.5, 0.1]), Interpolation::Blend)?;
+/// assert_eq!(mixture.reflectance(500.0), 0.5);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[must_use]
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cube {
     contract: Contract,

@@ -19,7 +19,7 @@
 //! use upglow::{Bispectral, Fluorescence, Material, Mixture, Model, Sigmoid};
 //! use upglow::{DyeModel, DyeOptions, DyeSet};
 //!
-//! let dyes = DyeModel::new(DyeSet::named("seed8")?, DyeOptions::default())?;
+//! let dyes = DyeModel::new(DyeSet::named("konig8")?, DyeOptions::default())?;
 //! let model = Model::Dyes(dyes);
 //! let material = Material {
 //!     reflectance: Sigmoid::flat(0.5),
@@ -34,53 +34,53 @@
 //! Out of scope: finding materials (crate `upglow-fit`), threads, printing.
 
 mod aside;
-mod batch;
 mod bispectral;
-mod bspline;
-mod coefficient_table;
 mod cube;
-mod cube_file;
-mod curve_table;
-mod distribution;
-mod dye;
-mod edge;
-mod features;
-mod header;
-mod interpolation;
-mod inverse_root;
-mod lookup_table;
 mod material;
-mod mixture;
-mod model;
-mod model_on_grid;
-mod packed_mixture;
-mod packed_node;
-mod packed_sampling;
-mod quantile_table;
+mod packed;
 #[cfg(test)]
 mod random;
-mod sampling;
-mod sigmoid;
 
 pub use aside::{Aside, AsideError, write_whole};
-pub use batch::{ColorTable, LengthError};
-pub use bispectral::Bispectral;
-pub use coefficient_table::{CoefficientTable, CoefficientTableError, Integrator};
+pub use bispectral::{Bispectral, Draw, Sample};
+pub use cube::coefficient_table::{CoefficientTable, CoefficientTableError, Integrator};
+pub use cube::error::{CubeFileError, ReadCubeError};
+pub use cube::interpolation::Interpolation;
 pub use cube::{Cube, CubeError, FitRecord, LookupError, Node, NodeError};
-pub use cube_file::{ReadCubeError, WriteCubeError};
-pub use dye::{DyeSet, DyeSetError};
-pub use edge::Edge;
-pub use features::{FeatureError, Features};
-pub use interpolation::Interpolation;
-pub use lookup_table::LookupTable;
+pub use material::analytic_model::AnalyticModel;
+pub use material::dye_model::{DyeCurves, DyeModel, DyeOptions, QuantumYield};
+pub use material::dye_set::{DyeSet, DyeSetError};
+pub use material::edge::Edge;
+pub use material::features::{FeatureError, Features};
+pub use material::formula::{Accounting, Emitted, Mixing};
+pub use material::mixture::Mixture;
+pub use material::model::Model;
+pub use material::model_error::ModelError;
+pub use material::model_on_grid::ModelOnGrid;
+pub use material::sigmoid::{Sigmoid, Vertex};
 pub use material::{Fluorescence, Material};
-pub use mixture::Mixture;
-pub use model::{
-    Accounting, AnalyticModel, DyeCurves, DyeModel, DyeOptions, Mixing, Model, ModelError,
-    QuantumYield,
-};
-pub use model_on_grid::{Emitted, ModelOnGrid};
-pub use packed_mixture::PackedMixture;
-pub use packed_node::PackedNode;
-pub use sampling::{Draw, Sample};
-pub use sigmoid::{Sigmoid, Vertex};
+pub use packed::color_table::{ColorTable, LengthError};
+pub use packed::lookup_table::LookupTable;
+pub use packed::mixture::PackedMixture;
+pub use packed::node::PackedNode;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Renderers share cubes and tables between threads, and hand materials over.
+    #[test]
+    fn threads_share_what_a_renderer_holds() {
+        const fn shared<T: Send + Sync>() {}
+        const {
+            shared::<Cube>();
+            shared::<LookupTable>();
+            shared::<ColorTable>();
+            shared::<CoefficientTable>();
+            shared::<ModelOnGrid>();
+            shared::<Mixture<'_>>();
+            shared::<PackedMixture<'_>>();
+            shared::<CubeFileError>();
+        }
+    }
+}

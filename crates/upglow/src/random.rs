@@ -79,7 +79,7 @@ pub(crate) fn models() -> Vec<Model> {
             for optical_density in [None, Some(4.0)] {
                 let quantum_yield = QuantumYield::Measured;
                 let options = DyeOptions { accounting, mixing, quantum_yield, optical_density };
-                let set = DyeSet::named("seed8").expect("built in");
+                let set = DyeSet::named("konig8").expect("built in");
                 models.push(Model::Dyes(DyeModel::new(set, options).expect("in range")));
             }
         }

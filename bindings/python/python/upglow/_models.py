@@ -67,7 +67,7 @@ class Dyes:
         1 - 10^(-A·a). ``None``: a itself, a thin solution.
     """
 
-    set: str | os.PathLike[str] | Sequence[Dye] = "seed8"
+    set: str | os.PathLike[str] | Sequence[Dye] = "konig8"
     accounting: str = "energy"
     mixing: str = "pooled"
     quantum_yield: float | str = 1.0

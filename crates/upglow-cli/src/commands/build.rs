@@ -35,7 +35,7 @@ pub(crate) fn run(args: &BuildArgs, console: &Console) -> Result<(), Failure> {
         BuildError::Cube(error) => Failure::option("--resolution", error),
         error => Failure::input("build", error),
     })?;
-    let bytes = cube.to_bytes().map_err(|error| Failure::file(&args.output, error))?;
+    let bytes = cube.to_bytes();
     check_stopped()?;
     files::write(&args.output, &bytes)?;
     console.print(&BuildReport {

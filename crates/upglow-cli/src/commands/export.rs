@@ -192,7 +192,7 @@ mod tests {
 
     #[test]
     fn each_node_is_a_line_of_as_many_cells_as_the_header() {
-        let set = DyeSet::named("seed8").unwrap();
+        let set = DyeSet::named("konig8").unwrap();
         let model = Model::Dyes(DyeModel::new(set, DyeOptions::default()).unwrap());
         let node = Node {
             reflectance: [500.0, -0.5, 0.01],

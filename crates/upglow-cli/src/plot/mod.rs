@@ -140,7 +140,7 @@ mod tests {
 
     #[test]
     fn absorption_and_reflectance_of_a_white_material_add_up_to_one() {
-        let dyes = DyeModel::new(DyeSet::named("seed8").unwrap(), DyeOptions::default()).unwrap();
+        let dyes = DyeModel::new(DyeSet::named("konig8").unwrap(), DyeOptions::default()).unwrap();
         let model = Model::Dyes(dyes);
         let material = Material {
             reflectance: Sigmoid::flat(1.0),

@@ -381,7 +381,7 @@ mod tests {
     use upglow_color::{Contract, Grid};
 
     fn dyes() -> ModelOnGrid {
-        let dyes = DyeModel::new(DyeSet::named("seed8").unwrap(), DyeOptions::default()).unwrap();
+        let dyes = DyeModel::new(DyeSet::named("konig8").unwrap(), DyeOptions::default()).unwrap();
         ModelOnGrid::new(&Model::Dyes(dyes), &Contract::default().on(Grid::FIT))
     }
 

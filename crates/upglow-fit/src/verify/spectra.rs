@@ -350,7 +350,7 @@ mod tests {
                 let quantum_yield = QuantumYield::Measured;
                 let optical_density = Some(4.0);
                 let options = DyeOptions { accounting, mixing, quantum_yield, optical_density };
-                let set = DyeSet::named("seed8").unwrap();
+                let set = DyeSet::named("konig8").unwrap();
                 models.push(Model::Dyes(DyeModel::new(set, options).unwrap()));
             }
         }

@@ -333,7 +333,7 @@ mod tests {
                 let quantum_yield = QuantumYield::Fixed(0.75);
                 let options =
                     DyeOptions { accounting, mixing, quantum_yield, ..DyeOptions::default() };
-                models.push(DyeModel::new(DyeSet::named("seed8").unwrap(), options).unwrap());
+                models.push(DyeModel::new(DyeSet::named("konig8").unwrap(), options).unwrap());
                 let quantum_yield = QuantumYield::Measured;
                 let options = DyeOptions { quantum_yield, ..options };
                 models.push(DyeModel::new(DyeSet::named("open8").unwrap(), options).unwrap());

@@ -56,7 +56,7 @@ fn names_of(bands: Grid) -> Vec<String> {
 }
 
 fn model() -> DyeModel {
-    DyeModel::new(DyeSet::named("seed8").unwrap(), DyeOptions::default()).unwrap()
+    DyeModel::new(DyeSet::named("konig8").unwrap(), DyeOptions::default()).unwrap()
 }
 
 fn material(i: usize) -> Material {

@@ -51,7 +51,7 @@ impl StudyCube {
         match self {
             Self::SeedAnalytic { .. } => Ok(Model::Analytic(AnalyticModel::default())),
             Self::Reference | Self::Search { .. } | Self::Seed { .. } | Self::SeedFeatures => {
-                let dyes = DyeSet::named("seed8")?;
+                let dyes = DyeSet::named("konig8")?;
                 Ok(Model::Dyes(DyeModel::new(dyes, DyeOptions::default())?))
             }
         }

@@ -59,7 +59,7 @@ pub(crate) fn cube(resolution: usize, kind: Kind) -> Cube {
     let model = match kind {
         Kind::Bells => Model::Analytic(AnalyticModel::default()),
         _ => {
-            let set = DyeSet::named("seed8").expect("built in");
+            let set = DyeSet::named("konig8").expect("built in");
             Model::Dyes(DyeModel::new(set, DyeOptions::default()).expect("valid"))
         }
     };

@@ -26,7 +26,7 @@ const WEIGHTS: u32 = 20;
 pub(super) fn backward_shares() -> Result<Vec<Backward>, StudyError> {
     let [pooled, separate] = [model(Mixing::Pooled)?, model(Mixing::Separate)?];
     let colorimetry = Contract::default().on(Grid::FIT);
-    let set = DyeSet::named("seed8")?;
+    let set = DyeSet::named("konig8")?;
     let names = set.dyes().iter().map(|dye| dye.name.clone());
     let worst = |(first, name)| {
         let share = |model: &Model, step: u32| {
@@ -45,7 +45,7 @@ pub(super) fn backward_shares() -> Result<Vec<Backward>, StudyError> {
 
 fn model(mixing: Mixing) -> Result<Model, StudyError> {
     let options = DyeOptions { mixing, ..DyeOptions::default() };
-    Ok(Model::Dyes(DyeModel::new(DyeSet::named("seed8")?, options)?))
+    Ok(Model::Dyes(DyeModel::new(DyeSet::named("konig8")?, options)?))
 }
 
 fn backward_share(material: &Mixture, colorimetry: &Colorimetry) -> f64 {

@@ -2,7 +2,9 @@
 
 use upglow_color::{LinearRgb, choices};
 
-use crate::{Features, Material, Sigmoid};
+use crate::material::Material;
+use crate::material::features::Features;
+use crate::material::sigmoid::Sigmoid;
 
 /// How a color between nodes gets its material.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

@@ -1,6 +1,6 @@
 //! A smooth reflectance by its shape: shift, width, slope.
 
-use crate::{Sigmoid, Vertex};
+use crate::material::sigmoid::{Sigmoid, Vertex};
 
 /// A sigmoid reflectance described by its shape.
 #[derive(Clone, Copy, Debug, PartialEq)]

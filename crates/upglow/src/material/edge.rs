@@ -1,7 +1,6 @@
 //! A smooth reflectance by its steepest point.
 
-use crate::Sigmoid;
-use crate::sigmoid::sigmoid;
+use crate::material::sigmoid::{Sigmoid, sigmoid};
 
 /// The reflectance with its greatest slope at `edge_nm`.
 ///
@@ -88,7 +87,7 @@ impl Sigmoid {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Features;
+    use crate::material::features::Features;
     use proptest::prelude::*;
 
     /// Single precision of the three numbers, through a parabola whose terms are near 10.

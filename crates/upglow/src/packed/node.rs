@@ -3,9 +3,9 @@
 use upglow_color::rounding::to_single;
 
 use crate::cube::{Cube, Node};
-use crate::edge::Edge;
 use crate::material::Fluorescence;
-use crate::model::Model;
+use crate::material::edge::Edge;
+use crate::material::model::Model;
 
 /// One material as devices read it: eight numbers in single precision, all finite.
 ///

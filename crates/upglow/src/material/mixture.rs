@@ -2,17 +2,19 @@
 
 use upglow_color::{Grid, Xyz};
 
-use crate::bispectral::Bispectral;
-use crate::material::{Lobe, Material};
-use crate::model::Model;
-use crate::model_on_grid::ModelOnGrid;
-use crate::sampling::{Sample, ratio};
+use crate::bispectral::{Bispectral, Sample};
+use crate::material::Material;
+use crate::material::lobe::Lobe;
+use crate::material::model::Model;
+use crate::material::model_on_grid::ModelOnGrid;
+use crate::material::sampling::{Shares, ratio};
 
 /// A convex mixture of up to four materials of one model.
 ///
 /// The light that a mixture gives back is the weighted mean of what its materials give back, so a
 /// mixture of valid materials is valid: it conserves energy, its reflectance is a fraction and no
 /// steeper than theirs, and its color is the weighted mean of theirs.
+#[must_use]
 #[derive(Clone, Copy, Debug)]
 pub struct Mixture<'m> {
     model: &'m Model,
@@ -42,11 +44,6 @@ impl<'m> Mixture<'m> {
         self.parts.iter().copied().filter(|(weight, _)| *weight > 0.0)
     }
 
-    /// The integral, over all incident wavelengths, of what fluorescence gives back of them; nm.
-    pub fn returned_total_nm(&self) -> f64 {
-        self.lobes().map(|(w, lobe)| w * lobe.returned_total_nm()).sum()
-    }
-
     /// The re-radiation (Donaldson) matrix over the bands around `grid`'s wavelengths.
     ///
     /// `[outgoing][incident]`: the share of the energy that comes in at the incident wavelength
@@ -70,19 +67,41 @@ impl<'m> Mixture<'m> {
     }
 
     /// The color of the mixture under the light of `sums`, which must be of the same model.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use upglow::{Material, Mixture, Model, ModelOnGrid, Sigmoid};
+    /// use upglow_color::{Contract, Grid};
+    ///
+    /// let model = Model::Reflectance;
+    /// let gray = Mixture::of(&model, Material::passive(Sigmoid::flat(0.5)));
+    /// let color = gray.color(&ModelOnGrid::new(&model, &Contract::default().on(Grid::FIT)));
+    /// assert!((color.0[1] - 0.5).abs() < 1e-9);
+    /// ```
     pub fn color(&self, sums: &ModelOnGrid) -> Xyz {
-        let mut sum = [0.0; 3];
-        for (weight, material) in self.parts() {
-            let color = sums.color(material).0;
-            (0..3).for_each(|k| sum[k] += weight * color[k]);
-        }
-        Xyz(sum)
+        self.parts().map(|(weight, material)| sums.color(material) * weight).sum()
     }
 
-    pub(crate) fn lobes(&self) -> impl Iterator<Item = (f64, Lobe<'m>)> + '_ {
+    fn lobes(&self) -> impl Iterator<Item = (f64, Lobe<'m>)> + '_ {
         self.parts().flat_map(|(weight, material)| {
             material.fluorescence.lobes(self.model).map(move |lobe| (weight, lobe))
         })
+    }
+
+    /// What leaves at `out_nm` of light that is 1 at every wavelength.
+    fn shares_leaving(&self, out_nm: f64) -> Shares<Lobe<'m>> {
+        self.shares(out_nm, |lobe| lobe.emission(out_nm) * lobe.returned_total_nm())
+    }
+
+    /// What leaves of light at `in_nm`.
+    fn shares_arriving(&self, in_nm: f64) -> Shares<Lobe<'m>> {
+        self.shares(in_nm, |lobe| lobe.returned(in_nm) * lobe.emitted_total())
+    }
+
+    fn shares(&self, nm: f64, share: impl Fn(Lobe<'m>) -> f64) -> Shares<Lobe<'m>> {
+        let carried = self.lobes().map(|(weight, lobe)| (weight * share(lobe), lobe));
+        Shares::new(self.reflectance(nm), carried)
     }
 }
 
@@ -161,7 +180,7 @@ mod tests {
                 for optical_density in [None, Some(4.0)] {
                     let quantum_yield = QuantumYield::Measured;
                     let options = DyeOptions { accounting, mixing, quantum_yield, optical_density };
-                    let set = DyeSet::named("seed8").unwrap();
+                    let set = DyeSet::named("konig8").unwrap();
                     models.push(Model::Dyes(DyeModel::new(set, options).unwrap()));
                 }
             }

@@ -78,6 +78,14 @@ pub enum DyeSetError {
         /// The cell.
         found: String,
     },
+    /// The folder's list has no column of files or none of quantum yields.
+    #[error("{}: header {found:?}, expected columns file and quantum_yield", path.display())]
+    Columns {
+        /// The list.
+        path: PathBuf,
+        /// Its first line.
+        found: String,
+    },
     /// No dye, or too many.
     #[error("{found} dyes, expected 1 to {MOST_DYES}")]
     Count {
@@ -104,7 +112,7 @@ impl DyeSet {
         Ok(Self { name: name.into(), dyes })
     }
 
-    /// The built-in set of this name.
+    /// The built-in set of this name; `konig8` is known by its former name `seed8` too.
     ///
     /// # Errors
     ///
@@ -140,7 +148,7 @@ impl DyeSet {
         Self::new(&name, dyes)
     }
 
-    /// The name that files state.
+    /// The name that files state; that of `konig8` is `seed8`.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -200,7 +208,8 @@ fn read_yields(path: &Path) -> Result<Vec<(String, f64)>, DyeSetError> {
     let header = lines.next().unwrap_or_default();
     let column = |name: &str| header.iter().position(|cell| cell == name);
     let (Some(file), Some(quantum_yield)) = (column("file"), column("quantum_yield")) else {
-        return Ok(Vec::new());
+        let found = text.lines().next().unwrap_or_default().into();
+        return Err(DyeSetError::Columns { path: path.into(), found });
     };
     let stated = lines.filter_map(|cells| {
         let cell = cells.get(quantum_yield)?.trim();
@@ -278,6 +287,23 @@ mod tests {
         let set = DyeSet::from_folder(folder.path()).unwrap();
         let facts: Vec<_> = set.dyes().iter().map(|d| (&d.name[..], d.quantum_yield)).collect();
         assert_eq!(facts, [("green", None), ("red", Some(0.5)), ("violet", None)]);
+    }
+
+    #[test]
+    fn a_list_of_yields_without_its_columns_is_refused_by_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let list = folder.path().join(PROVENANCE);
+        std::fs::write(&list, "file,quantum yield\nred.csv,0.5\n").unwrap();
+        let error = DyeSet::from_folder(folder.path()).unwrap_err().to_string();
+        let expected = "header \"file,quantum yield\", expected columns file and quantum_yield";
+        assert_eq!(error, format!("{}: {expected}", list.display()));
+    }
+
+    #[test]
+    fn the_former_name_is_read_and_files_keep_it() {
+        let set = DyeSet::named("seed8").unwrap();
+        assert_eq!(set, DyeSet::named("konig8").unwrap());
+        assert_eq!(set.name(), "seed8");
     }
 
     #[test]

@@ -1,11 +1,14 @@
 //! The curves of dyes as densities that wavelengths are drawn from, in single precision.
 
 use fearless_simd::Simd;
-use upglow_color::Spectrum;
 use upglow_color::rounding::to_single;
+use upglow_color::{Grid, Spectrum};
 
-use crate::curve_table::{BINS, FIRST_NM, whole};
-use crate::lookup_table::{greater_of, smaller_of};
+use crate::packed::vector::{greater_of, smaller_of, whole};
+
+/// The range of [`Grid::FINE`], whose step is 1 nm.
+pub(crate) const FIRST_NM: f32 = 300.0;
+pub(crate) const BINS: usize = Grid::FINE.len() - 1;
 
 /// Where a search starts, for each 1/256 of the area. More take room in the caches; fewer leave
 /// more bins of 1 nm to step over.
@@ -15,8 +18,8 @@ const GUIDES: usize = 256;
 /// guide's share and no more are needed; each more costs every draw.
 const STEPS: usize = 2;
 
-/// The curves of a ring of dyes on [`upglow_color::Grid::FINE`] as densities: straight lines
-/// between samples, of unit area. [`crate::distribution::Distribution`] for inner loops.
+/// The curves of a ring of dyes on [`Grid::FINE`] as densities: straight lines
+/// between samples, of unit area. [`crate::material::distribution::Distribution`] for inner loops.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct QuantileTable {
     /// The bin that g / [`GUIDES`] of the area is in, `[dye][g]`.
@@ -89,8 +92,9 @@ fn solve_trapezoid(low: f32, high: f32, area: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::distribution::Distribution;
-    use crate::{DyeModel, DyeOptions, DyeSet};
+    use crate::material::distribution::Distribution;
+    use crate::material::dye_model::{DyeCurves, DyeModel, DyeOptions};
+    use crate::material::dye_set::DyeSet;
     use fearless_simd::{Level, dispatch};
 
     fn quantile(table: &QuantileTable, dye: u32, u: f32) -> f32 {
@@ -102,9 +106,9 @@ mod tests {
         // Rounding to single precision of areas below 1, three times, and of wavelengths.
         const SINGLE_AREA: f64 = 2e-7;
         const SINGLE_NM: f64 = 1e-4;
-        let set = DyeSet::named("seed8").unwrap();
+        let set = DyeSet::named("konig8").unwrap();
         let model = DyeModel::new(set, DyeOptions::default()).unwrap();
-        let of = |curve: fn(&crate::DyeCurves) -> &Spectrum| {
+        let of = |curve: fn(&DyeCurves) -> &Spectrum| {
             model.curves().iter().map(curve).collect::<Vec<_>>()
         };
         for curves in [of(|dye| &dye.absorption), of(|dye| &dye.emission)] {
@@ -125,8 +129,8 @@ mod tests {
 
     #[test]
     fn no_number_leaves_the_range_of_the_curves() {
-        let empty = Spectrum::new(upglow_color::Grid::FINE, vec![0.0; BINS + 1]).unwrap();
-        let set = DyeSet::named("seed8").unwrap();
+        let empty = Spectrum::new(Grid::FINE, vec![0.0; BINS + 1]).unwrap();
+        let set = DyeSet::named("konig8").unwrap();
         let model = DyeModel::new(set, DyeOptions::default()).unwrap();
         let table = QuantileTable::new([&empty, &model.curves()[0].absorption].into_iter());
         for dye in [0, 1] {

@@ -1,66 +1,35 @@
-//! Drawing wavelengths in proportion to what a mixture makes of them.
+//! Choosing between what a mixture carries by reflection and by its lobes.
 //!
-//! A path from the camera knows the outgoing wavelength λo and draws the incident one; a path from
-//! the light knows the incident wavelength λi and draws the outgoing one. Both choose between the
-//! elastic part, which keeps the wavelength, and the fluorescent lobes in proportion to what each
-//! carries, and then draw from the chosen lobe exactly. Every sample then has the same throughput:
+//! Both directions choose between the elastic part, which keeps the wavelength, and the fluorescent
+//! lobes in proportion to what each carries, and then draw from the chosen lobe exactly. Every sample
+//! then has the same throughput:
 //!
 //! - from the camera, W(λo) = r(λo) + Σ ê(λo)·∫ returned(λ) dλ;
 //! - from the light, W(λi) = r(λi) + Σ returned(λi), the albedo.
-//!
-//! # Measure
-//!
-//! The elastic part is a Dirac delta: it has a probability, not a density. The fluorescent part
-//! has a density per nm, which is the re-radiation divided by the throughput. Densities of the two
-//! directions and of other strategies combine by multiple importance sampling; the delta combines
-//! with nothing.
 
-use crate::bispectral::Bispectral;
-use crate::material::{Curves, Lobe};
-use crate::mixture::Mixture;
+use crate::bispectral::{Draw, Sample};
 
-/// A wavelength drawn from a material, in double or single precision.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sample<T> {
-    /// The wavelength drawn, nm.
-    pub nm: T,
-    /// Factor of the path's throughput: what the material carries at the known wavelength divided
-    /// by the density (elastic: the probability) of the one drawn; the same for every sample.
-    pub throughput: T,
-    /// How the wavelength was drawn and how likely it was.
-    pub draw: Draw<T>,
-}
-
-/// How a wavelength was drawn.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Draw<T> {
-    /// The wavelength was kept.
-    Elastic {
-        /// How likely that was, 0..=1.
-        probability: T,
-    },
-    /// The wavelength was changed.
-    Fluorescent {
-        /// The density of the wavelength drawn, 1/nm; over all of them it adds up to 1 less the
-        /// probability of the elastic draw.
-        per_nm: T,
-    },
-}
-
-/// What is carried at one wavelength by reflection and by each fluorescent lobe.
-pub(crate) struct Shares<'m> {
+/// What is carried at one wavelength by reflection and by each fluorescent lobe `L`.
+pub(crate) struct Shares<L> {
     elastic: f64,
     /// At most two lobes for each of four materials.
-    lobes: [Option<(f64, Lobe<'m>)>; 8],
+    lobes: [Option<(f64, L)>; 8],
 }
 
-impl<'m> Shares<'m> {
+impl<L: Copy> Shares<L> {
+    /// What reflection carries, and each of at most eight lobes.
+    pub(crate) fn new(elastic: f64, carried: impl Iterator<Item = (f64, L)>) -> Self {
+        let mut lobes = [None; 8];
+        lobes.iter_mut().zip(carried).for_each(|(slot, carried)| *slot = Some(carried));
+        Self { elastic, lobes }
+    }
+
     pub(crate) fn total(&self) -> f64 {
         self.elastic + self.lobes.iter().flatten().map(|(share, _)| share).sum::<f64>()
     }
 
     /// The lobe that `u` in 0..1 falls on; `None` is the elastic part.
-    fn choose(&self, u: f64) -> Option<Lobe<'m>> {
+    fn choose(&self, u: f64) -> Option<L> {
         let mut rest = u * self.total() - self.elastic;
         if rest < 0.0 {
             return None;
@@ -86,7 +55,7 @@ impl<'m> Shares<'m> {
         &self,
         known_nm: f64,
         [choice, u]: [f64; 2],
-        draw: impl Fn(Lobe<'m>, f64) -> (f64, f64),
+        draw: impl Fn(L, f64) -> (f64, f64),
     ) -> Option<Sample<f64>> {
         let throughput = self.total();
         if throughput <= 0.0 {
@@ -106,126 +75,16 @@ impl<'m> Shares<'m> {
     }
 }
 
-impl<'m> Mixture<'m> {
-    /// What leaves at `out_nm` of light that is 1 at every wavelength.
-    pub(crate) fn shares_leaving(&self, out_nm: f64) -> Shares<'m> {
-        self.shares(out_nm, |lobe| lobe.emission(out_nm) * lobe.returned_total_nm())
-    }
-
-    /// What leaves of light at `in_nm`.
-    pub(crate) fn shares_arriving(&self, in_nm: f64) -> Shares<'m> {
-        self.shares(in_nm, |lobe| lobe.returned(in_nm) * lobe.emitted_total())
-    }
-
-    fn shares(&self, nm: f64, share: impl Fn(Lobe<'m>) -> f64) -> Shares<'m> {
-        let mut lobes = [None; 8];
-        for (slot, (weight, lobe)) in lobes.iter_mut().zip(self.lobes()) {
-            *slot = Some((weight * share(lobe), lobe));
-        }
-        Shares { elastic: self.reflectance(nm), lobes }
-    }
-}
-
 /// 0 where there is nothing to share.
 pub(crate) fn ratio(part: f64, whole: f64) -> f64 {
     if whole > 0.0 { part / whole } else { 0.0 }
 }
 
-impl Lobe<'_> {
-    /// ∫ returned dλ over incident wavelengths, nm.
-    pub(crate) fn returned_total_nm(&self) -> f64 {
-        let area = match self.curves {
-            Curves::Dyes { .. } => self.shared_areas().iter().sum(),
-            Curves::Bells { model, absorption_nm, .. } => {
-                let (bell, per_area) = bell(model, absorption_nm);
-                per_area
-                    * match self.accounting() {
-                        crate::Accounting::Energy => 1.0,
-                        crate::Accounting::Photon => {
-                            bell.shared_area_below(self.mean_emission_nm, f64::INFINITY)
-                        }
-                    }
-            }
-        };
-        self.strength * self.quantum_yield * area
-    }
-
-    /// ∫ ê dλ: 1, less what a measured emission that ends above zero has outside its tables.
-    pub(crate) fn emitted_total(&self) -> f64 {
-        match self.curves {
-            Curves::Dyes { model, first, second, weight } => {
-                let area = |dye: usize| model.curves()[dye].emitting.total();
-                (1.0 - weight) * area(first) + weight * area(second)
-            }
-            Curves::Bells { .. } => 1.0,
-        }
-    }
-
-    /// An incident wavelength with the density of what is returned, from `u` in 0..1.
-    pub(crate) fn sample_absorbed(&self, u: f64) -> f64 {
-        match self.curves {
-            Curves::Dyes { model, first, second, .. } => {
-                let (dye, u) = pick([first, second], self.shared_areas(), u);
-                let curve = &model.curves()[dye].absorbing;
-                curve.sample_shared(self.accounting(), self.mean_emission_nm, u)
-            }
-            Curves::Bells { model, absorption_nm, .. } => {
-                let (bell, _) = bell(model, absorption_nm);
-                match self.accounting() {
-                    crate::Accounting::Energy => bell.quantile(u),
-                    crate::Accounting::Photon => bell.shared_quantile(self.mean_emission_nm, u),
-                }
-            }
-        }
-    }
-
-    /// An outgoing wavelength with the density of the emission, from `u` in 0..1.
-    pub(crate) fn sample_emitted(&self, u: f64) -> f64 {
-        match self.curves {
-            Curves::Dyes { model, first, second, weight } => {
-                let area = |dye: usize| model.curves()[dye].emitting.total();
-                let areas = [(1.0 - weight) * area(first), weight * area(second)];
-                let (dye, u) = pick([first, second], areas, u);
-                model.curves()[dye].emitting.sample(u)
-            }
-            Curves::Bells { model, emission_nm, .. } => {
-                model.emission_bell(emission_nm).quantile(u)
-            }
-        }
-    }
-
-    /// ∫ a·share dλ of the two dyes, by weight, nm; zeros for bells.
-    fn shared_areas(&self) -> [f64; 2] {
-        let Curves::Dyes { model, first, second, weight } = self.curves else {
-            return [0.0; 2];
-        };
-        let accounting = self.accounting();
-        [(first, 1.0 - weight), (second, weight)].map(|(dye, weight)| {
-            weight * model.curves()[dye].absorbing.shared_total(accounting, self.mean_emission_nm)
-        })
-    }
-}
-
-/// The absorption around `center_nm`, and the area that it has for a peak of 1, nm.
-fn bell(model: &crate::AnalyticModel, center_nm: f64) -> (crate::bspline::Bell, f64) {
-    let bell = model.absorption_bell(center_nm);
-    (bell, 1.5 * bell.step_nm)
-}
-
-/// One of two dyes in proportion to `areas`, and what is left of `u` to draw from it.
-fn pick([first, second]: [usize; 2], areas: [f64; 2], u: f64) -> (usize, f64) {
-    let target = u * (areas[0] + areas[1]);
-    if target < areas[0] || areas[1] <= 0.0 {
-        (first, ratio(target, areas[0]))
-    } else {
-        (second, (target - areas[0]) / areas[1])
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::Model;
+    use crate::bispectral::{Bispectral, Draw};
+    use crate::material::mixture::Mixture;
+    use crate::material::model::Model;
     use crate::random::{Random, assert_drawn_from, materials, models, place};
     use upglow_color::Grid;
 

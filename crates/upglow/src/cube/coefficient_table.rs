@@ -3,7 +3,7 @@
 use upglow_color::rounding::{to_single, whole};
 use upglow_color::{Contract, Grid, LinearRgb};
 
-use crate::Sigmoid;
+use crate::material::sigmoid::Sigmoid;
 
 /// Reflectances for the RGB colors of a unit cube, in the layout that `rgb2spec` defined and that
 /// Mitsuba 3, pbrt-v4 and colour-science read.

@@ -2,7 +2,11 @@
 
 use upglow_color::{Colorimetry, Xyz};
 
-use crate::{Accounting, AnalyticModel, DyeModel, Fluorescence, Material, Mixing, Model};
+use crate::material::analytic_model::AnalyticModel;
+use crate::material::dye_model::{DyeCurves, DyeModel, DyeOptions};
+use crate::material::formula::{Accounting, Emitted, Emitter};
+use crate::material::model::Model;
+use crate::material::{Fluorescence, Material};
 
 /// A model under one light and observer.
 ///
@@ -13,29 +17,7 @@ pub struct ModelOnGrid {
     model: Model,
     colorimetry: Colorimetry,
     wavelengths_nm: Vec<f64>,
-    dyes: Vec<SampledDye>,
-}
-
-/// One dye on the grid.
-#[derive(Clone, Debug)]
-struct SampledDye {
-    /// Absorptance at concentration 1, `[wavelength]`.
-    absorption: Vec<f64>,
-    /// What that absorbs of the light.
-    absorbed: f64,
-    /// Color of one unit of emitted energy.
-    stimulus: [f64; 3],
-    quantum_yield: f64,
-    mean_emission_nm: f64,
-}
-
-/// A color and its derivatives by `N` parameters, `[parameter][X Y Z]`.
-#[derive(Clone, Copy, Debug)]
-pub struct Emitted<const N: usize> {
-    /// Color that a fluorescence of concentration 1 emits.
-    pub color: [f64; 3],
-    /// Its derivatives by the model's parameters.
-    pub derivatives: [[f64; 3]; N],
+    dyes: Vec<Emitter>,
 }
 
 impl ModelOnGrid {
@@ -44,7 +26,7 @@ impl ModelOnGrid {
         let grid = colorimetry.grid();
         let dyes = match model {
             Model::Dyes(model) => {
-                model.curves().iter().map(|c| SampledDye::new(c, colorimetry)).collect()
+                model.curves().iter().map(|c| Emitter::new(c, colorimetry)).collect()
             }
             _ => Vec::new(),
         };
@@ -80,61 +62,13 @@ impl ModelOnGrid {
     /// parameter is the weight.
     pub fn emitted_by_dyes(&self, model: &DyeModel, first: usize, weight: f64) -> Emitted<1> {
         let (a, b) = (&self.dyes[first], &self.dyes[model.partner(first)]);
-        let options = model.options();
-        match options.mixing {
-            Mixing::Pooled => self.pooled(a, b, weight, options.accounting),
-            Mixing::Separate => self.separate(a, b, weight, options.accounting),
-        }
-    }
-
-    fn pooled(
-        &self,
-        a: &SampledDye,
-        b: &SampledDye,
-        weight: f64,
-        accounting: Accounting,
-    ) -> Emitted<1> {
-        let mix = |x: f64, y: f64| (1.0 - weight) * x + weight * y;
-        let mean_nm = mix(a.mean_emission_nm, b.mean_emission_nm);
-        let (of_a, of_b) =
-            (self.absorbed(a, accounting, mean_nm), self.absorbed(b, accounting, mean_nm));
-        let absorbed = mix(of_a.0, of_b.0);
-        let by_mean_nm = mix(of_a.1, of_b.1);
-        let absorbed_by_weight =
-            of_b.0 - of_a.0 + by_mean_nm * (b.mean_emission_nm - a.mean_emission_nm);
-        let quantum_yield = mix(a.quantum_yield, b.quantum_yield);
-        let energy = quantum_yield * absorbed;
-        let energy_by_weight =
-            (b.quantum_yield - a.quantum_yield) * absorbed + quantum_yield * absorbed_by_weight;
-        let stimulus = [0, 1, 2].map(|k| mix(a.stimulus[k], b.stimulus[k]));
-        Emitted {
-            color: stimulus.map(|s| energy * s),
-            derivatives: [[0, 1, 2].map(|k| {
-                energy_by_weight * stimulus[k] + energy * (b.stimulus[k] - a.stimulus[k])
-            })],
-        }
-    }
-
-    fn separate(
-        &self,
-        a: &SampledDye,
-        b: &SampledDye,
-        weight: f64,
-        accounting: Accounting,
-    ) -> Emitted<1> {
-        let [of_a, of_b] = [a, b].map(|dye| {
-            let energy = dye.quantum_yield * self.absorbed(dye, accounting, dye.mean_emission_nm).0;
-            dye.stimulus.map(|s| energy * s)
-        });
-        Emitted {
-            color: [0, 1, 2].map(|k| (1.0 - weight) * of_a[k] + weight * of_b[k]),
-            derivatives: [[0, 1, 2].map(|k| of_b[k] - of_a[k])],
-        }
+        let DyeOptions { mixing, accounting, .. } = model.options();
+        mixing.emitted([a, b], weight, |dye, mean_nm| self.absorbed(dye, accounting, mean_nm))
     }
 
     /// Energy that one dye absorbs and may give back around `mean_nm`, and its derivative by
     /// `mean_nm`, 1/nm.
-    fn absorbed(&self, dye: &SampledDye, accounting: Accounting, mean_nm: f64) -> (f64, f64) {
+    fn absorbed(&self, dye: &Emitter, accounting: Accounting, mean_nm: f64) -> (f64, f64) {
         if accounting == Accounting::Energy {
             return (dye.absorbed, 0.0);
         }
@@ -209,8 +143,9 @@ impl ModelOnGrid {
     fn absorbed_share(&self, fluorescence: Fluorescence) -> impl Fn(usize) -> f64 + '_ {
         move |i| match (fluorescence, &self.model) {
             (Fluorescence::Dyes { first, weight, concentration }, Model::Dyes(model)) => {
-                let at = |dye: usize| self.dyes[dye].absorption[i];
-                concentration * ((1.0 - weight) * at(first) + weight * at(model.partner(first)))
+                let dyes = [first, model.partner(first)];
+                let absorptions = dyes.map(|dye| self.dyes[dye].absorption[i]);
+                model.options().mixing.absorbed_in_all(absorptions, concentration, weight)
             }
             (
                 Fluorescence::Analytic { emission_peak_nm, stokes_shift_nm, concentration },
@@ -224,8 +159,8 @@ impl ModelOnGrid {
     }
 }
 
-impl SampledDye {
-    fn new(curves: &crate::DyeCurves, colorimetry: &Colorimetry) -> Self {
+impl Emitter {
+    fn new(curves: &DyeCurves, colorimetry: &Colorimetry) -> Self {
         let grid = colorimetry.grid();
         let emission = curves.emission.resampled(grid);
         // The sum over a coarse grid is not quite the area: without this energy would be made.
@@ -249,7 +184,9 @@ impl SampledDye {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{DyeOptions, DyeSet, QuantumYield};
+    use crate::material::dye_model::QuantumYield;
+    use crate::material::dye_set::DyeSet;
+    use crate::material::formula::Mixing;
     use upglow_color::{Contract, Grid};
 
     /// A central difference of this step errs by its square and by rounding over it.

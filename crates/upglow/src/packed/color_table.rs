@@ -5,17 +5,19 @@ use fearless_simd::{Level, Simd, dispatch, f32x4, f32x16, i32x16, mask32x16};
 use upglow_color::Colorimetry;
 use upglow_color::rounding::to_single;
 
-use crate::lookup_table::axis;
-use crate::{Cube, ModelOnGrid};
+use crate::cube::Cube;
+use crate::material::model_on_grid::ModelOnGrid;
+use crate::packed::lookup_table::axis;
 
 /// The colors that the materials of a [`Cube`] have under the contract's light.
 ///
 /// The color of a mixture is the weighted mean of its materials' colors, so the color of any
 /// looked-up material needs no spectrum: it is the tetrahedral interpolation of the nodes' colors,
 /// and exactly that of [`crate::Mixture::color`] with [`crate::Interpolation::Blend`].
+#[must_use]
 #[derive(Clone, Debug)]
 pub struct ColorTable {
-    level: Level,
+    simd_level: Level,
     resolution: u32,
     /// X, Y, Z and nothing, `[blue][green][red]`.
     nodes: Vec<[f32; 4]>,
@@ -40,7 +42,7 @@ impl Cube {
             [x, y, z, 0.0]
         };
         let nodes = (0..self.nodes().len()).map(color).collect();
-        ColorTable { level: Level::new(), resolution: axis(self), nodes }
+        ColorTable { simd_level: Level::new(), resolution: axis(self), nodes }
     }
 }
 
@@ -55,7 +57,7 @@ impl ColorTable {
         if rgb.len() != xyz.len() {
             return Err(LengthError { found: xyz.len(), expected: rgb.len() });
         }
-        let outside = dispatch!(self.level, simd => simd.vectorize(
+        let outside = dispatch!(self.simd_level, simd => simd.vectorize(
             #[inline(always)]
             || self.xyz_in_groups(simd, rgb, xyz),
         ));
@@ -149,7 +151,7 @@ struct Places {
 
 impl Places {
     /// Finds the corners of the nearest colors of the cube, and those of 0 for what is no number;
-    /// [`crate::lookup_table::Corners`] for many colors. A bit says whether a color is outside.
+    /// [`crate::packed::lookup_table::Corners`] for many colors. A bit says whether a color is outside.
     #[inline(always)]
     fn find<S: Simd>(&mut self, simd: S, resolution: u32, rgb: &[[f32; GROUP]; 3]) -> u64 {
         let mut outside = 0;
@@ -226,8 +228,9 @@ fn single(count: i32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cube::FitRecord;
+    use crate::cube::interpolation::Interpolation;
     use crate::random::{Random, models};
-    use crate::{FitRecord, Interpolation};
     use upglow_color::{Contract, Grid, LinearRgb};
 
     #[test]
@@ -265,7 +268,7 @@ mod tests {
         let nodes = (0..125).map(|_| random.node(&model)).collect();
         let cube = Cube::new(Contract::default(), model, FitRecord::default(), 5, nodes).unwrap();
         let wide = cube.color_table(&Contract::default().on(Grid::FIT));
-        let plain = ColorTable { level: Level::baseline(), ..wide.clone() };
+        let plain = ColorTable { simd_level: Level::baseline(), ..wide.clone() };
         let rgb: Vec<[f32; 3]> =
             (0..1000).map(|_| [(); 3].map(|()| to_single(random.unit()))).collect();
         let mut xyz = [vec![[0.0; 3]; rgb.len()], vec![[0.0; 3]; rgb.len()]];

@@ -3,7 +3,7 @@
 use upglow_color::Spectrum;
 use upglow_color::rounding::whole;
 
-use crate::Accounting;
+use crate::material::formula::Accounting;
 
 /// Entries of the table that starts a search. More take room in the caches; fewer leave more bins
 /// of 1 nm to walk through.

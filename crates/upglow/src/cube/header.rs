@@ -5,7 +5,12 @@ use upglow_color::{
     Adaptation, Contract, Grid, Illuminant, MeasuredDye, Observer, RgbSpace, Spectrum,
 };
 
-use crate::{AnalyticModel, Cube, DyeModel, DyeOptions, DyeSet, FitRecord, Model, ReadCubeError};
+use crate::cube::error::ReadCubeError;
+use crate::cube::{Cube, FitRecord};
+use crate::material::analytic_model::AnalyticModel;
+use crate::material::dye_model::{DyeModel, DyeOptions};
+use crate::material::dye_set::DyeSet;
+use crate::material::model::Model;
 
 /// Name of the file's only metadata entry.
 pub(crate) const ENTRY: &str = "upglow";
@@ -124,12 +129,12 @@ impl Header {
         struct Version {
             format_version: u32,
         }
-        let version: Version = serde_json::from_str(json).map_err(ReadCubeError::header)?;
+        let version: Version = serde_json::from_str(json).map_err(ReadCubeError::Header)?;
         if !FORMAT_VERSIONS.contains(&version.format_version) {
             let (found, newest) = (version.format_version, WITH_OBSERVER);
             return Err(ReadCubeError::Version { found, newest });
         }
-        serde_json::from_str(json).map_err(ReadCubeError::header)
+        serde_json::from_str(json).map_err(ReadCubeError::Header)
     }
 
     /// Whether the file holds color-matching functions.
@@ -158,21 +163,17 @@ impl ContractHeader {
         observer: Option<[Vec<f64>; 3]>,
     ) -> Result<Contract, ReadCubeError> {
         let observer = self.to_observer(observer)?;
-        let grids = (grid_numbers(Grid::FIT), grid_numbers(Grid::FINE));
-        if (self.fit_grid_nm, self.table_grid_nm) != grids {
-            return Err(ReadCubeError::field("grids", format!("{:?}", self.fit_grid_nm), grids.0));
-        }
+        ReadCubeError::check("fit_grid_nm", &self.fit_grid_nm, &grid_numbers(Grid::FIT))?;
+        ReadCubeError::check("table_grid_nm", &self.table_grid_nm, &grid_numbers(Grid::FINE))?;
         let space = RgbSpace::custom(&self.rgb_space, self.primaries_xy, self.white_xy)
-            .map_err(|e| ReadCubeError::field("rgb_space", e, "primaries around a white"))?;
-        let power = Spectrum::new(Grid::FINE, illuminant)
-            .map_err(|e| ReadCubeError::field("illuminant", e, "a spectrum"))?;
+            .map_err(ReadCubeError::value("rgb_space"))?;
+        let power =
+            Spectrum::new(Grid::FINE, illuminant).map_err(ReadCubeError::value("illuminant"))?;
         let illuminant = Illuminant::from_spectrum(&self.illuminant, &power)
-            .map_err(|e| ReadCubeError::field("illuminant", e, "a visible light"))?;
+            .map_err(ReadCubeError::value("illuminant"))?;
         let adaptation: Adaptation = parse_field("adaptation", &self.adaptation)?;
         let contract = Contract { space, illuminant, observer, adaptation };
-        contract
-            .check()
-            .map_err(|e| ReadCubeError::field("contract", e, "a light that is seen"))?;
+        contract.check().map_err(ReadCubeError::value("contract"))?;
         Ok(contract)
     }
 
@@ -180,15 +181,13 @@ impl ContractHeader {
     fn to_observer(&self, matching: Option<[Vec<f64>; 3]>) -> Result<Observer, ReadCubeError> {
         let Some([x, y, z]) = matching else {
             let observer = Observer::cie_1931_2deg();
-            expect_field("observer", &self.observer, observer.name())?;
+            ReadCubeError::check("observer", self.observer.as_str(), observer.name())?;
             return Ok(observer);
         };
-        let curve = |values| {
-            Spectrum::new(Grid::FINE, values)
-                .map_err(|e| ReadCubeError::field("observer", e, "finite samples"))
-        };
+        let curve =
+            |values| Spectrum::new(Grid::FINE, values).map_err(ReadCubeError::value("observer"));
         Observer::from_spectra(&self.observer, [curve(x)?, curve(y)?, curve(z)?])
-            .map_err(|e| ReadCubeError::field("observer", e, "color-matching functions"))
+            .map_err(ReadCubeError::value("observer"))
     }
 }
 
@@ -237,17 +236,14 @@ impl ModelHeader {
             Self::Dyes { set, dyes, mixing, accounting, quantum_yield, optical_density } => {
                 let dyes = dyes.iter().zip(curves).map(|(dye, curves)| dye.to_dye(curves));
                 let dyes = dyes.collect::<Result<Vec<_>, _>>()?;
-                let set = DyeSet::new(set, dyes)
-                    .map_err(|e| ReadCubeError::field("dyes", e, "measured curves"))?;
+                let set = DyeSet::new(set, dyes).map_err(ReadCubeError::value("dyes"))?;
                 let options = DyeOptions {
                     accounting: parse_field("accounting", accounting)?,
                     mixing: parse_field("mixing", mixing)?,
                     quantum_yield: parse_field("quantum_yield", quantum_yield)?,
                     optical_density: *optical_density,
                 };
-                DyeModel::new(set, options)
-                    .map(Model::Dyes)
-                    .map_err(|e| ReadCubeError::field("model", e, "valid options"))
+                DyeModel::new(set, options).map(Model::Dyes).map_err(ReadCubeError::value("model"))
             }
             Self::Analytic { absorption_fwhm_nm, emission_fwhm_nm, accounting, quantum_yield } => {
                 let accounting = parse_field("accounting", accounting)?;
@@ -258,7 +254,7 @@ impl ModelHeader {
                     *quantum_yield,
                 )
                 .map(Model::Analytic)
-                .map_err(|e| ReadCubeError::field("model", e, "valid options"))
+                .map_err(ReadCubeError::value("model"))
             }
         }
     }
@@ -267,8 +263,7 @@ impl ModelHeader {
 impl DyeHeader {
     fn to_dye(&self, curves: [Vec<f64>; 2]) -> Result<MeasuredDye, ReadCubeError> {
         let [absorption, emission] = curves.map(|values| {
-            Spectrum::new(Grid::FINE, values)
-                .map_err(|e| ReadCubeError::field("dye curves", e, "finite samples"))
+            Spectrum::new(Grid::FINE, values).map_err(ReadCubeError::value("dye curves"))
         });
         Ok(MeasuredDye {
             name: self.name.clone(),
@@ -292,14 +287,10 @@ impl FitHeader {
     }
 }
 
-fn expect_field(field: &'static str, found: &str, expected: &str) -> Result<(), ReadCubeError> {
-    if found == expected { Ok(()) } else { Err(ReadCubeError::field(field, found, expected)) }
-}
-
 fn parse_field<T>(field: &'static str, text: &str) -> Result<T, ReadCubeError>
 where
     T: std::str::FromStr,
-    T::Err: std::fmt::Display,
+    T::Err: std::error::Error + Send + Sync + 'static,
 {
-    text.parse().map_err(|e| ReadCubeError::field(field, e, "a known word"))
+    text.parse().map_err(ReadCubeError::value(field))
 }

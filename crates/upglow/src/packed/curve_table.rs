@@ -2,18 +2,15 @@
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x4, i32x4};
+use upglow_color::Spectrum;
 use upglow_color::rounding::to_single;
-use upglow_color::{Grid, Spectrum};
 
-use crate::lookup_table::smaller_of;
-use crate::packed_mixture::transposed;
-use crate::quantile_table::QuantileTable;
-use crate::{DyeModel, Model};
+use crate::material::dye_model::{DyeCurves, DyeModel};
+use crate::material::model::Model;
+use crate::packed::quantile_table::{BINS, FIRST_NM, QuantileTable};
+use crate::packed::vector::{smaller_of, transposed, whole};
 
-/// The range of [`Grid::FINE`], whose step is 1 nm.
-pub(crate) const FIRST_NM: f32 = 300.0;
 const LAST_NM: f32 = 830.0;
-pub(crate) const BINS: usize = Grid::FINE.len() - 1;
 /// The number before [`BINS`]: the last wavelength is in the last bin. What it misses is 3e-5 of
 /// a step, 1e-6 at most.
 const LAST_PLACE: f32 = f32::next_down(BINS as f32);
@@ -72,7 +69,7 @@ impl CurveTable {
         let curves = model.curves();
         let ring = curves.len() + 1;
         let dyes = || curves.iter().cycle().take(ring);
-        let rows = |of: fn(&crate::DyeCurves) -> &Spectrum| {
+        let rows = |of: fn(&DyeCurves) -> &Spectrum| {
             let rows = (0..BINS).flat_map(|i| {
                 (0..ring).flat_map(move |dye| {
                     let values = of(&curves[dye % curves.len()]).values();
@@ -161,24 +158,13 @@ impl Curves {
 }
 
 impl DyeNumbers {
-    fn new(model: &DyeModel, dye: &crate::DyeCurves) -> Self {
-        let accounting = model.options().accounting;
-        let absorbed_nm = dye.absorbing.shared_total(accounting, dye.mean_emission_nm);
+    fn new(model: &DyeModel, dye: &DyeCurves) -> Self {
         Self {
             quantum_yield: to_single(dye.quantum_yield),
             mean_emission_nm: to_single(dye.mean_emission_nm),
             absorbed_nm: to_single(dye.absorbing.total()),
-            returned_nm: to_single(dye.quantum_yield * absorbed_nm),
+            returned_nm: to_single(dye.returned_nm(model.options().accounting)),
             emitted: to_single(dye.emitting.total()),
         }
     }
-}
-
-/// The whole part of a number that is not negative and below 2³¹. In a vector: what is safe for
-/// all numbers takes a plain conversion four more instructions.
-#[inline(always)]
-pub(crate) fn whole<S: Simd>(simd: S, number: f32) -> u32 {
-    let whole: i32x4<S> = f32x4::splat(simd, number).to_int();
-    let [whole, ..]: [i32; 4] = whole.into();
-    whole.cast_unsigned()
 }

@@ -2,11 +2,12 @@
 
 use upglow_color::rounding::to_single;
 
-use crate::curve_table::CurveTable;
-use crate::packed_mixture::{Bells, PackedMixture, with_baseline};
-use crate::packed_node::PackedNode;
-use crate::{Cube, LookupError, Mixing, Model};
-use fearless_simd::{Level, dispatch};
+use crate::cube::{Cube, LookupError};
+use crate::material::model::Model;
+use crate::packed::mixture::PackedMixture;
+use crate::packed::model::PackedModel;
+use crate::packed::node::PackedNode;
+use crate::packed::vector::{greater_of, smaller_of, with_baseline};
 
 /// A [`Cube`] in single precision, packed so that a look-up touches as few cache lines as it can.
 ///
@@ -27,14 +28,10 @@ use fearless_simd::{Level, dispatch};
 /// assert_eq!(mixture.reflectance4([400.0, 500.0, 600.0, 700.0]), [0.5; 4]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+#[must_use]
 #[derive(Clone, Debug)]
 pub struct LookupTable {
-    pub(crate) model: Model,
-    pub(crate) curves: CurveTable,
-    pub(crate) absorption_bells: Bells,
-    pub(crate) emission_bells: Bells,
-    /// The vectors that several wavelengths at once are worked on with.
-    pub(crate) level: Level,
+    model: PackedModel,
     resolution: u32,
     nodes: Vec<PackedNode>,
 }
@@ -42,13 +39,8 @@ pub struct LookupTable {
 impl Cube {
     /// The cube compiled for looking up millions of colors.
     pub fn lookup_table(&self) -> LookupTable {
-        let [absorption_bells, emission_bells] = Bells::of(self.model());
         LookupTable {
-            absorption_bells,
-            emission_bells,
-            model: self.model().clone(),
-            curves: CurveTable::new(self.model()),
-            level: Level::new(),
+            model: PackedModel::new(self.model()),
             resolution: axis(self),
             nodes: self.packed_nodes().collect(),
         }
@@ -63,7 +55,7 @@ pub(crate) fn axis(cube: &Cube) -> u32 {
 impl LookupTable {
     /// What the fluorescence is made of.
     pub fn model(&self) -> &Model {
-        &self.model
+        &self.model.model
     }
 
     /// Nodes along each axis.
@@ -80,12 +72,7 @@ impl LookupTable {
     pub fn lookup(&self, rgb: [f32; 3]) -> Result<PackedMixture<'_>, LookupError> {
         let corners = Corners::around(self.resolution, rgb).ok_or_else(|| outside(rgb))?;
         let nodes = corners.nodes.map(|node| &self.nodes[node as usize]);
-        Ok(with_baseline!(simd => PackedMixture::new(simd, self, corners.weights, nodes)))
-    }
-
-    /// Whether each of two dyes gives back only what it absorbed itself.
-    pub(crate) fn is_separate(&self) -> bool {
-        matches!(&self.model, Model::Dyes(dyes) if dyes.options().mixing == Mixing::Separate)
+        Ok(with_baseline!(simd => PackedMixture::new(simd, &self.model, corners.weights, nodes)))
     }
 }
 
@@ -149,18 +136,6 @@ impl Corners {
     }
 }
 
-/// The greater of two numbers, in one instruction: `f32::max` also looks for what is no number.
-#[inline(always)]
-pub(crate) fn greater_of(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
-}
-
-/// The smaller of two numbers, in one instruction.
-#[inline(always)]
-pub(crate) fn smaller_of(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
-}
-
 /// The whole part of a position in a cube.
 #[expect(
     clippy::cast_possible_truncation,
@@ -176,8 +151,12 @@ fn whole(position: f64) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bispectral::Bispectral;
+    use crate::cube::FitRecord;
+    use crate::cube::interpolation::Interpolation;
+    use crate::material::edge::Edge;
     use crate::random::{Random, models};
-    use crate::{Bispectral, Edge, FitRecord, Interpolation};
+    use fearless_simd::Level;
     use proptest::prelude::*;
     use upglow_color::{Contract, LinearRgb};
 
@@ -187,7 +166,7 @@ mod tests {
             rgb in prop::array::uniform3(0.0_f32..=1.0),
             resolution in 2_u32..256,
         ) {
-            let expected = crate::interpolation::tetrahedron(resolution as usize,
+            let expected = crate::cube::interpolation::tetrahedron(resolution as usize,
                 LinearRgb(rgb.map(f64::from)),
             );
             let corners = Corners::around(resolution, rgb).unwrap();
@@ -269,7 +248,7 @@ mod tests {
             let cube =
                 Cube::new(Contract::default(), model, FitRecord::default(), 3, nodes).unwrap();
             let (wide, mut plain) = (cube.lookup_table(), cube.lookup_table());
-            plain.level = Level::baseline();
+            plain.model.simd_level = Level::baseline();
             for _ in 0..2000 {
                 let rgb = [(); 3].map(|()| to_single(random.unit()));
                 let nm = [(); 8].map(|()| to_single(random.between(290.0, 840.0)));

@@ -1,61 +1,50 @@
 //! The material of one color in single precision, ready to evaluate.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{Level, Simd, dispatch, f32x4, f32x8, i32x4};
-
+use fearless_simd::{Simd, dispatch, f32x4, f32x8, i32x4};
 use upglow_color::rounding::to_single;
 
-use crate::bispectral::Bispectral;
-use crate::curve_table::{Curves, DyeNumbers, whole};
-use crate::inverse_root::{twice_inverse_root, twice_inverse_root8};
-use crate::lookup_table::{LookupTable, greater_of};
-use crate::packed_node::{PackedBells, PackedDyes, PackedNode, PackedReflectance};
-use crate::packed_sampling::{elastic, ratio, shifted};
-use crate::sampling::Sample;
-use crate::{Accounting, Model};
+use crate::bispectral::{Bispectral, Sample};
+use crate::material::formula::{Accounting, Mixing, PerLobe};
+use crate::material::model::Model;
+use crate::packed::curve_table::{Curves, DyeNumbers};
+use crate::packed::inverse_root::{twice_inverse_root, twice_inverse_root8};
+use crate::packed::model::PackedModel;
+use crate::packed::node::{PackedBells, PackedDyes, PackedNode, PackedReflectance};
+use crate::packed::sampling::{ChosenLobe, DrawnLobe, Shares, elastic, ratio, shifted};
+use crate::packed::vector::{greater_of, load, sum, sums, transposed, whole, with_baseline};
 
 /// The four materials around a color, mixed by weight: a [`crate::Mixture`] for inner loops.
 ///
 /// Every answer is within 1e-5 of the mixture's at wavelengths from 0 to 10 000 nm; farther out it
 /// is that of the nearer end. None panics, whatever the wavelength. Nothing is allocated, and a
 /// look-up, an evaluation or a draw takes tens of nanoseconds at most.
+#[must_use]
 #[derive(Clone, Copy, Debug)]
 pub struct PackedMixture<'t> {
-    pub(crate) table: &'t LookupTable,
+    model: &'t PackedModel,
     /// Whether any of the four fluoresces.
-    pub(crate) fluorescent: bool,
+    fluorescent: bool,
     /// The first dye of all corners that fluoresce, if it is the same: their curves are then read
     /// once.
     common_dye: Option<u32>,
-    pub(crate) weights: [f32; 4],
+    weights: [f32; 4],
     edge_nm: [f32; 4],
     /// Coefficients of 1, d and d², `[coefficient][corner]`.
     parabola: [[f32; 4]; 3],
     /// [`PackedNode::fluorescence`], `[number][corner]`; read as [`PackedDyes`] or [`PackedBells`].
-    pub(crate) fluorescence: [[f32; 4]; 4],
+    fluorescence: [[f32; 4]; 4],
 }
-
-/// A number for each lobe, `[lobe]`, of each corner: pooled dyes and bells have one lobe, separate
-/// dyes two.
-pub(crate) type PerLobe<S> = [f32x4<S>; 2];
 
 /// The wavelengths that are told apart, nm: beyond them, parabolas overflow.
 const FARTHEST_NM: f32 = 1e4;
-
-/// The processor's instructions that every target has: one wavelength fills one vector.
-macro_rules! with_baseline {
-    ($simd:ident => $answer:expr) => {
-        dispatch!(Level::baseline(), $simd => $answer)
-    };
-}
-pub(crate) use with_baseline;
 
 /// The widest instructions of this processor: several wavelengths fill several vectors. What is
 /// called in there must be inlined, or it is compiled for the baseline: closures, and so `map` of an
 /// array, often are not.
 macro_rules! in_vectors {
-    ($blend:ident, $simd:ident => $answer:expr) => {
-        dispatch!($blend.table.level, $simd => $simd.vectorize(
+    ($mixture:ident, $simd:ident => $answer:expr) => {
+        dispatch!($mixture.model.simd_level, $simd => $simd.vectorize(
             #[inline(always)]
             || $answer
         ))
@@ -66,7 +55,7 @@ impl<'t> PackedMixture<'t> {
     #[inline(always)]
     pub(crate) fn new<S: Simd>(
         simd: S,
-        table: &'t LookupTable,
+        model: &'t PackedModel,
         weights: [f32; 4],
         nodes: [&PackedNode; 4],
     ) -> Self {
@@ -78,7 +67,7 @@ impl<'t> PackedMixture<'t> {
         // Bells have no dye in common, but nothing asks.
         let PackedDyes { weight, concentration, returned_nm, first } = fluorescence.into();
         Self {
-            table,
+            model,
             fluorescent: concentration.simd_gt(0.0).any_true(),
             common_dye: common_dye(simd, concentration, first),
             weights,
@@ -90,11 +79,11 @@ impl<'t> PackedMixture<'t> {
 
     /// The reflectance behind what the lobes absorb.
     #[inline(always)]
-    pub(crate) fn reflectance_through<S: Simd>(
+    fn reflectance_through<S: Simd>(
         &self,
         simd: S,
         lambda_nm: f32,
-        [one, two]: PerLobe<S>,
+        [one, two]: PerLobe<f32x4<S>>,
     ) -> f32 {
         let [weights, edge_nm, constant, linear, quadratic] = self.reflectance_numbers();
         let [weights, edge_nm] = [load(simd, weights), load(simd, edge_nm)];
@@ -217,11 +206,11 @@ impl<'t> PackedMixture<'t> {
     fn passed<S: Simd>(&self, simd: S, nm: f32x4<S>) -> [f32x4<S>; 4] {
         let all = f32x4::splat(simd, 1.0);
         let mut passed = [all; 4];
-        match &self.table.model {
+        match &self.model.model {
             Model::Reflectance => {}
             Model::Dyes(_) => {
                 let PackedDyes { weight, concentration, .. } = self.fluorescence.into();
-                let curves = &self.table.curves;
+                let curves = &self.model.curves;
                 let rows = curves.rows(simd, nm);
                 let mut pair = [all; 2];
                 if let Some(dye) = self.common_dye {
@@ -232,13 +221,15 @@ impl<'t> PackedMixture<'t> {
                     if self.common_dye.is_none() {
                         pair = curves.absorption.pairs(simd, rows, [dyes[i]; 4]);
                     }
-                    let mixed = mix(pair, f32x4::splat(simd, weight[i]));
-                    passed[i] = all - mixed * concentration[i];
+                    let concentration = f32x4::splat(simd, concentration[i]);
+                    let weight = f32x4::splat(simd, weight[i]);
+                    passed[i] =
+                        all - self.model.mixing.absorbed_in_all(pair, concentration, weight);
                 }
             }
             Model::Analytic(_) => {
                 let PackedBells { concentration, absorption_nm, .. } = self.fluorescence.into();
-                let bells = self.table.absorption_bells;
+                let bells = self.model.absorption_bells;
                 for i in 0..4 {
                     let bell = bells.at(simd, f32x4::splat(simd, absorption_nm[i]), nm);
                     passed[i] = all - bell * concentration[i];
@@ -250,102 +241,146 @@ impl<'t> PackedMixture<'t> {
 
     /// The re-radiation for what the lobes return of one wavelength and emit at another, 1/nm.
     #[inline(always)]
-    pub(crate) fn moved<S: Simd>(
+    fn moved<S: Simd>(
         &self,
         simd: S,
-        returned: PerLobe<S>,
-        emission: PerLobe<S>,
+        returned: PerLobe<f32x4<S>>,
+        emission: PerLobe<f32x4<S>>,
     ) -> f32 {
-        let weights: f32x4<S> = self.weights.simd_into(simd);
+        let weights = load(simd, &self.weights);
         sum(weights * (returned[0] * emission[0] + returned[1] * emission[1]))
     }
 
-    /// The curves of each corner's dye and of its neighbor at one wavelength.
+    /// What each corner's lobes absorb of light at `lambda_nm`.
     #[inline(always)]
-    fn pairs<S: Simd>(&self, simd: S, curves: &Curves, lambda_nm: f32) -> PerLobe<S> {
-        let row = self.table.curves.row(simd, lambda_nm);
-        match self.common_dye {
-            Some(dye) => {
-                let [a, b] = curves.pair(row, dye);
-                [f32x4::splat(simd, a), f32x4::splat(simd, b)]
+    fn absorbed<S: Simd>(&self, simd: S, lambda_nm: f32) -> PerLobe<f32x4<S>> {
+        let none = f32x4::splat(simd, 0.0);
+        match &self.model.model {
+            Model::Dyes(_) if self.fluorescent => {
+                let PackedDyes { weight, concentration, .. } = self.corner_numbers(simd).into();
+                let pair = self.pairs(simd, &self.model.curves.absorption, lambda_nm);
+                self.model.mixing.absorbed(pair, concentration, weight)
             }
-            None => curves.pairs(simd, row.four_times(simd), self.dyes(simd)),
+            Model::Analytic(_) if self.fluorescent => {
+                let PackedBells { concentration, absorption_nm, .. } =
+                    self.corner_numbers(simd).into();
+                let nm = f32x4::splat(simd, lambda_nm);
+                [concentration * self.model.absorption_bells.at(simd, absorption_nm, nm), none]
+            }
+            _ => [none; 2],
         }
     }
 
-    /// What each corner's dyes or bells absorb of light at `lambda_nm`.
+    /// What each corner's lobes return of light at `in_nm`.
     #[inline(always)]
-    pub(crate) fn pairs_absorbed<S: Simd>(&self, simd: S, lambda_nm: f32) -> PerLobe<S> {
+    fn returned<S: Simd>(&self, simd: S, in_nm: f32) -> PerLobe<f32x4<S>> {
+        self.returned_of(simd, in_nm, self.absorbed(simd, in_nm))
+    }
+
+    /// What each corner's lobes return of what they absorbed at `in_nm`.
+    #[inline(always)]
+    fn returned_of<S: Simd>(
+        &self,
+        simd: S,
+        in_nm: f32,
+        [one, two]: PerLobe<f32x4<S>>,
+    ) -> PerLobe<f32x4<S>> {
+        let (none, nm) = (f32x4::splat(simd, 0.0), f32x4::splat(simd, in_nm));
+        match &self.model.model {
+            Model::Dyes(dyes) if self.fluorescent => {
+                let accounting = dyes.options().accounting;
+                let yielded = self.per_lobe(simd, |dye| dye.quantum_yield);
+                let means_nm = match accounting {
+                    Accounting::Energy => [none; 2],
+                    Accounting::Photon => self.per_lobe(simd, |dye| dye.mean_emission_nm),
+                };
+                let second = match self.model.mixing {
+                    Mixing::Pooled => none,
+                    Mixing::Separate => accounting.returned(two, yielded[1], nm, means_nm[1]),
+                };
+                [accounting.returned(one, yielded[0], nm, means_nm[0]), second]
+            }
+            Model::Analytic(bells) if self.fluorescent => {
+                let PackedBells { emission_nm, .. } = self.corner_numbers(simd).into();
+                let yielded = f32x4::splat(simd, to_single(bells.quantum_yield()));
+                [bells.accounting().returned(one, yielded, nm, emission_nm), none]
+            }
+            _ => [none; 2],
+        }
+    }
+
+    /// Where each corner's lobes give it back, 1/nm.
+    #[inline(always)]
+    fn emission<S: Simd>(&self, simd: S, out_nm: f32) -> PerLobe<f32x4<S>> {
+        let none = f32x4::splat(simd, 0.0);
+        match &self.model.model {
+            Model::Dyes(_) if self.fluorescent => {
+                let PackedDyes { weight, .. } = self.corner_numbers(simd).into();
+                let pair = self.pairs(simd, &self.model.curves.emission, out_nm);
+                self.model.mixing.per_lobe(pair, weight)
+            }
+            Model::Analytic(_) if self.fluorescent => {
+                let PackedBells { emission_nm, .. } = self.corner_numbers(simd).into();
+                let nm = f32x4::splat(simd, out_nm);
+                [self.model.emission_bells.at(simd, emission_nm, nm), none]
+            }
+            _ => [none; 2],
+        }
+    }
+
+    /// What leaves at `out_nm` of light that is 1 at every wavelength, where the lobes' emission is
+    /// `emission`.
+    #[inline(always)]
+    fn leaving<S: Simd>(
+        &self,
+        simd: S,
+        out_nm: f32,
+        emission: PerLobe<f32x4<S>>,
+    ) -> Shares<f32x4<S>> {
+        let [one, two] = self.returned_totals(simd);
+        let weights = load(simd, &self.weights);
+        let elastic = self.reflectance_through(simd, out_nm, self.absorbed(simd, out_nm));
+        Shares { elastic, lobes: [weights * one * emission[0], weights * two * emission[1]] }
+    }
+
+    /// What each corner's lobes return of light that is 1 at every wavelength, nm.
+    #[inline(always)]
+    fn returned_totals<S: Simd>(&self, simd: S) -> PerLobe<f32x4<S>> {
         let none = f32x4::splat(simd, 0.0);
         if !self.fluorescent {
             return [none; 2];
         }
-        match &self.table.model {
-            Model::Reflectance => [none; 2],
-            Model::Dyes(_) => {
-                let PackedDyes { weight, concentration, .. } = self.corner_numbers(simd).into();
-                let [a, b] = self.pairs(simd, &self.table.curves.absorption, lambda_nm);
-                let second = concentration * weight;
-                [(concentration - second) * a, second * b]
-            }
-            Model::Analytic(_) => {
-                let PackedBells { concentration, absorption_nm, .. } =
-                    self.corner_numbers(simd).into();
-                let nm = f32x4::splat(simd, lambda_nm);
-                [concentration * self.table.absorption_bells.at(simd, absorption_nm, nm), none]
+        let PackedDyes { weight, concentration, returned_nm, .. } =
+            self.corner_numbers(simd).into();
+        match self.model.mixing {
+            Mixing::Pooled => [returned_nm, none],
+            Mixing::Separate => {
+                let [one, two] = self.model.mixing.concentrations(concentration, weight);
+                let [a, b] = self.dye_numbers(simd, |dye| dye.returned_nm);
+                [one * a, two * b]
             }
         }
+    }
+
+    /// What the lobes return of light at `in_nm`, and what leaves of it.
+    #[inline(always)]
+    fn arriving<S: Simd>(&self, simd: S, in_nm: f32) -> (PerLobe<f32x4<S>>, Shares<f32x4<S>>) {
+        let absorbed = self.absorbed(simd, in_nm);
+        let returned = self.returned_of(simd, in_nm, absorbed);
+        let elastic = self.reflectance_through(simd, in_nm, absorbed);
+        let weights = load(simd, &self.weights);
+        let mut lobes = [weights * returned[0], weights * returned[1]];
+        if self.fluorescent && matches!(self.model.model, Model::Dyes(_)) {
+            let emitted = self.per_lobe(simd, |dye| dye.emitted);
+            lobes = [lobes[0] * emitted[0], lobes[1] * emitted[1]];
+        }
+        (returned, Shares { elastic, lobes })
     }
 
     #[inline(always)]
     fn corner_numbers<S: Simd>(&self, simd: S) -> [f32x4<S>; 4] {
         let [a, b, c, d] = &self.fluorescence;
         [load(simd, a), load(simd, b), load(simd, c), load(simd, d)]
-    }
-
-    /// What each corner's lobes return of light at `in_nm`.
-    #[inline(always)]
-    pub(crate) fn returned<S: Simd>(&self, simd: S, in_nm: f32) -> PerLobe<S> {
-        self.returned_of(simd, in_nm, self.pairs_absorbed(simd, in_nm))
-    }
-
-    /// What each corner's lobes return of what its dyes or bells absorbed at `in_nm`.
-    #[inline(always)]
-    pub(crate) fn returned_of<S: Simd>(
-        &self,
-        simd: S,
-        in_nm: f32,
-        [one, two]: PerLobe<S>,
-    ) -> PerLobe<S> {
-        let none = f32x4::splat(simd, 0.0);
-        if !self.fluorescent {
-            return [none; 2];
-        }
-        match &self.table.model {
-            Model::Reflectance => [none; 2],
-            Model::Dyes(model) => {
-                let PackedDyes { weight, .. } = self.corner_numbers(simd).into();
-                let accounting = model.options().accounting;
-                let yielded = self.dye_numbers(simd, |dye| dye.quantum_yield);
-                let per_mean = match accounting {
-                    Accounting::Energy => [none; 2],
-                    Accounting::Photon => self.dye_numbers(simd, |dye| dye.mean_emission_nm),
-                };
-                if self.table.is_separate() {
-                    return [
-                        one * yielded[0] * share(simd, accounting, in_nm, per_mean[0]),
-                        two * yielded[1] * share(simd, accounting, in_nm, per_mean[1]),
-                    ];
-                }
-                let mean_nm = mix(per_mean, weight);
-                [(one + two) * mix(yielded, weight) * share(simd, accounting, in_nm, mean_nm), none]
-            }
-            Model::Analytic(model) => {
-                let PackedBells { emission_nm, .. } = self.corner_numbers(simd).into();
-                let share = share(simd, model.accounting(), in_nm, emission_nm);
-                [one * share * to_single(model.quantum_yield()), none]
-            }
-        }
     }
 
     /// The number of each corner's dye.
@@ -357,10 +392,23 @@ impl<'t> PackedMixture<'t> {
         [a.cast_unsigned(), b.cast_unsigned(), c.cast_unsigned(), d.cast_unsigned()]
     }
 
+    /// The curves of each corner's dye and of its neighbor at one wavelength.
+    #[inline(always)]
+    fn pairs<S: Simd>(&self, simd: S, curves: &Curves, lambda_nm: f32) -> [f32x4<S>; 2] {
+        let row = self.model.curves.row(simd, lambda_nm);
+        match self.common_dye {
+            Some(dye) => {
+                let [a, b] = curves.pair(row, dye);
+                [f32x4::splat(simd, a), f32x4::splat(simd, b)]
+            }
+            None => curves.pairs(simd, row.four_times(simd), self.dyes(simd)),
+        }
+    }
+
     /// A number of each corner's dye and of its neighbor.
     #[inline(always)]
-    fn dye_numbers<S: Simd>(&self, simd: S, number: impl Fn(&DyeNumbers) -> f32) -> PerLobe<S> {
-        let curves = &self.table.curves;
+    fn dye_numbers<S: Simd>(&self, simd: S, number: impl Fn(&DyeNumbers) -> f32) -> [f32x4<S>; 2] {
+        let curves = &self.model.curves;
         if let Some(dye) = self.common_dye {
             let [one, two] = curves.pair(dye);
             return [f32x4::splat(simd, number(one)), f32x4::splat(simd, number(two))];
@@ -374,67 +422,18 @@ impl<'t> PackedMixture<'t> {
         [load(simd, &numbers[0]), load(simd, &numbers[1])]
     }
 
-    /// Where each corner's lobes give it back, 1/nm.
+    /// A lobe that a draw has chosen.
     #[inline(always)]
-    pub(crate) fn emission<S: Simd>(&self, simd: S, out_nm: f32) -> PerLobe<S> {
-        let none = f32x4::splat(simd, 0.0);
-        if !self.fluorescent {
-            return [none; 2];
-        }
-        match &self.table.model {
-            Model::Reflectance => [none; 2],
-            Model::Dyes(_) => {
-                let PackedDyes { weight, .. } = self.corner_numbers(simd).into();
-                let pair = self.pairs(simd, &self.table.curves.emission, out_nm);
-                if self.table.is_separate() { pair } else { [mix(pair, weight), none] }
-            }
-            Model::Analytic(_) => {
-                let PackedBells { emission_nm, .. } = self.corner_numbers(simd).into();
-                let nm = f32x4::splat(simd, out_nm);
-                [self.table.emission_bells.at(simd, emission_nm, nm), none]
-            }
-        }
+    fn chosen(&self, lobe: ChosenLobe) -> DrawnLobe<'t> {
+        let numbers = self.fluorescence.map(|numbers| numbers[lobe.corner]);
+        DrawnLobe { model: self.model, numbers, lobe: lobe.lobe }
     }
 
-    /// What leaves from each lobe of light that is 1 at every wavelength, where the lobes' emission
-    /// is `emission`.
+    /// A number of each corner's lobes from those of its dyes.
     #[inline(always)]
-    pub(crate) fn leaving_shares<S: Simd>(&self, simd: S, emission: PerLobe<S>) -> PerLobe<S> {
-        let none = f32x4::splat(simd, 0.0);
-        if !self.fluorescent {
-            return [none; 2];
-        }
-        let PackedDyes { weight, concentration, returned_nm, .. } =
-            self.corner_numbers(simd).into();
-        let weights: f32x4<S> = self.weights.simd_into(simd);
-        if !self.table.is_separate() {
-            return [weights * returned_nm * emission[0], none];
-        }
-        let [one, two] = self.dye_numbers(simd, |dye| dye.returned_nm);
-        let second = concentration * weight;
-        [
-            weights * (concentration - second) * one * emission[0],
-            weights * second * two * emission[1],
-        ]
-    }
-
-    /// What leaves from each lobe of the light of which it returns `returned`.
-    #[inline(always)]
-    pub(crate) fn arriving_shares<S: Simd>(&self, simd: S, returned: PerLobe<S>) -> PerLobe<S> {
-        if !self.fluorescent {
-            return returned;
-        }
-        let weights: f32x4<S> = self.weights.simd_into(simd);
-        let weighted = [weights * returned[0], weights * returned[1]];
-        if !matches!(self.table.model, Model::Dyes(_)) {
-            return weighted;
-        }
-        let emitted = self.dye_numbers(simd, |dye| dye.emitted);
-        if self.table.is_separate() {
-            return [weighted[0] * emitted[0], weighted[1] * emitted[1]];
-        }
-        let PackedDyes { weight, .. } = self.corner_numbers(simd).into();
-        [weighted[0] * mix(emitted, weight), weighted[1]]
+    fn per_lobe<S: Simd>(&self, simd: S, number: impl Fn(&DyeNumbers) -> f32) -> PerLobe<f32x4<S>> {
+        let PackedDyes { weight, .. } = PackedDyes::from(self.fluorescence.each_ref());
+        self.model.mixing.per_lobe(self.dye_numbers(simd, number), load(simd, weight))
     }
 }
 
@@ -449,7 +448,7 @@ impl Bispectral for PackedMixture<'_> {
     #[inline]
     fn reflectance(&self, lambda_nm: f32) -> f32 {
         with_baseline!(simd => {
-            self.reflectance_through(simd, lambda_nm, self.pairs_absorbed(simd, lambda_nm))
+            self.reflectance_through(simd, lambda_nm, self.absorbed(simd, lambda_nm))
         })
     }
 
@@ -478,9 +477,9 @@ impl Bispectral for PackedMixture<'_> {
     #[inline]
     fn albedo(&self, in_nm: f32) -> f32 {
         with_baseline!(simd => {
-            let absorbed = self.pairs_absorbed(simd, in_nm);
+            let absorbed = self.absorbed(simd, in_nm);
             let [one, two] = self.returned_of(simd, in_nm, absorbed);
-            let weights: f32x4<_> = self.weights.simd_into(simd);
+            let weights = load(simd, &self.weights);
             self.reflectance_through(simd, in_nm, absorbed) + sum(weights * (one + two))
         })
     }
@@ -491,10 +490,10 @@ impl Bispectral for PackedMixture<'_> {
             let emission = self.emission(simd, out_nm);
             let shares = self.leaving(simd, out_nm, emission);
             let throughput = shares.total();
-            Some(match shares.choose(self.lobes(), throughput, u[0])? {
+            Some(match shares.choose(self.model.mixing.lobes(), throughput, u[0])? {
                 None => elastic(out_nm, shares.elastic, throughput),
                 Some(lobe) => {
-                    let in_nm = self.draw_absorbed(simd, lobe, u[1]);
+                    let in_nm = self.chosen(lobe).draw_absorbed(simd, u[1]);
                     let moved = self.moved(simd, self.returned(simd, in_nm), emission);
                     shifted(in_nm, moved, throughput)
                 }
@@ -527,10 +526,10 @@ impl Bispectral for PackedMixture<'_> {
         with_baseline!(simd => {
             let (returned, shares) = self.arriving(simd, in_nm);
             let throughput = shares.total();
-            Some(match shares.choose(self.lobes(), throughput, u[0])? {
+            Some(match shares.choose(self.model.mixing.lobes(), throughput, u[0])? {
                 None => elastic(in_nm, shares.elastic, throughput),
                 Some(lobe) => {
-                    let out_nm = self.draw_emitted(simd, lobe, u[1]);
+                    let out_nm = self.chosen(lobe).draw_emitted(simd, u[1]);
                     let moved = self.moved(simd, returned, self.emission(simd, out_nm));
                     shifted(out_nm, moved, throughput)
                 }
@@ -568,51 +567,6 @@ fn common_dye<S: Simd>(simd: S, concentration: f32x4<S>, number: f32x4<S>) -> Op
     same.all_true().then_some(whole(simd, greatest))
 }
 
-/// Numbers of two dyes, mixed by the weight of the second.
-#[inline(always)]
-fn mix<S: Simd>([one, two]: PerLobe<S>, weight: f32x4<S>) -> f32x4<S> {
-    weight.mul_add(two - one, one)
-}
-
-/// Cubic B-splines of one width in single precision.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Bells {
-    /// 1 / distance of knots, 1/nm.
-    per_step: f32,
-    /// Factor of the bell with area 1 and unit step, over 6.
-    scale: f32,
-}
-
-impl Bells {
-    /// Absorption with a peak of 1, and emission with an area of 1.
-    pub(crate) fn of(model: &Model) -> [Self; 2] {
-        let Model::Analytic(model) = model else { return [Self::default(); 2] };
-        let [absorption, emission] =
-            [model.absorption_bell(0.0).step_nm.recip(), model.emission_bell(0.0).step_nm.recip()];
-        [
-            Self { per_step: to_single(absorption), scale: 1.5 / 6.0 },
-            Self { per_step: to_single(emission), scale: to_single(emission / 6.0) },
-        ]
-    }
-
-    #[inline(always)]
-    fn at<S: Simd>(self, simd: S, center_nm: f32x4<S>, nm: f32x4<S>) -> f32x4<S> {
-        let v = (nm - center_nm).abs() * self.per_step;
-        // The bell as two cubes, each of which is zero beyond its knot.
-        let outer = (f32x4::splat(simd, 2.0) - v).max(0.0);
-        let inner = (f32x4::splat(simd, 1.0) - v).max(0.0);
-        self.scale * (outer * outer * outer - 4.0 * inner * inner * inner)
-    }
-}
-
-#[inline(always)]
-fn share<S: Simd>(simd: S, accounting: Accounting, nm: f32, mean_nm: f32x4<S>) -> f32x4<S> {
-    match accounting {
-        Accounting::Energy => f32x4::splat(simd, 1.0),
-        Accounting::Photon => (f32x4::splat(simd, nm) / mean_nm).min(1.0),
-    }
-}
-
 #[inline(always)]
 fn within_range<S: Simd>(nm: f32x4<S>) -> f32x4<S> {
     nm.max(0.0).min(FARTHEST_NM)
@@ -630,32 +584,4 @@ fn shown<S: Simd>(
     let x = d.mul_add(d.mul_add(quadratic, linear), constant);
     let root = twice_inverse_root8(simd, x.mul_add(x, f32x8::splat(simd, 1.0)));
     weight * (0.25 * x).mul_add(root, f32x8::splat(simd, 0.5))
-}
-
-#[inline(always)]
-fn load<S: Simd>(simd: S, corners: &[f32; 4]) -> f32x4<S> {
-    f32x4::from_slice(simd, corners)
-}
-
-/// Rows and columns change places.
-#[inline(always)]
-pub(crate) fn transposed<S: Simd>([a, b, c, d]: [f32x4<S>; 4]) -> [f32x4<S>; 4] {
-    let (even, odd) = (a.interleave(c), b.interleave(d));
-    let (first, last) = (even.0.interleave(odd.0), even.1.interleave(odd.1));
-    [first.0, first.1, last.0, last.1]
-}
-
-/// The sums of four vectors.
-#[inline(always)]
-fn sums<S: Simd>([a, b, c, d]: [f32x4<S>; 4]) -> f32x4<S> {
-    let (even, odd) = (a.interleave(c), b.interleave(d));
-    let both = (even.0 + even.1).interleave(odd.0 + odd.1);
-    both.0 + both.1
-}
-
-/// The sum over the corners.
-#[inline(always)]
-pub(crate) fn sum<S: Simd>(corners: f32x4<S>) -> f32 {
-    let [a, b, c, d] = corners.into();
-    (a + b) + (c + d)
 }

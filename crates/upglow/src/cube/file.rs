@@ -4,105 +4,17 @@
 
 use std::borrow::Cow;
 use std::collections::HashMap;
-use std::fmt::Display;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use safetensors::{Dtype, SafeTensors, View};
 use sha2::{Digest, Sha256};
 use upglow_color::Grid;
 
-use crate::header::{Curves, ENTRY, Header, holds_observer};
-use crate::{AsideError, Cube, CubeError, Model, Node, write_whole};
-
-/// Why a file is not a cube that this program reads.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum ReadCubeError {
-    /// The file cannot be read.
-    #[error("{0}")]
-    Io(#[from] std::io::Error),
-    /// The file is not a whole safetensors file.
-    #[error("not a whole safetensors file ({0}), expected a cube made by upglow")]
-    Container(#[from] safetensors::SafeTensorError),
-    /// There is no header entry of ours.
-    #[error("no `upglow` entry in the header, expected a cube made by upglow")]
-    NotACube,
-    /// The file is of another version.
-    #[error("format version {found}, expected 1 to {newest}")]
-    Version {
-        /// Version of the file.
-        found: u32,
-        /// The newest version that this program reads.
-        newest: u32,
-    },
-    /// The header is not what this version writes.
-    #[error("header: {0}")]
-    Header(String),
-    /// A field of the header has a value that this program does not know.
-    #[error("header field {field} is {found:?}, expected {expected}")]
-    Field {
-        /// The field.
-        field: &'static str,
-        /// Its value, or what is wrong with it.
-        found: String,
-        /// What it should be.
-        expected: String,
-    },
-    /// A tensor is absent or has another type or shape.
-    #[error("tensor {name} is {found}, expected {expected}")]
-    Tensor {
-        /// The tensor.
-        name: &'static str,
-        /// Its type and shape, or "absent".
-        found: String,
-        /// What it should be.
-        expected: String,
-    },
-    /// The content is not what was written.
-    #[error("checksum {found}, expected {expected}: the file was altered or damaged")]
-    Checksum {
-        /// SHA-256 of the content, first eight digits.
-        found: String,
-        /// SHA-256 in the file, first eight digits.
-        expected: String,
-    },
-    /// The numbers do not make a cube.
-    #[error(transparent)]
-    Cube(#[from] CubeError),
-}
-
-impl ReadCubeError {
-    pub(crate) fn header(error: serde_json::Error) -> Self {
-        Self::Header(error.to_string())
-    }
-
-    pub(crate) fn field(
-        field: &'static str,
-        found: impl Display,
-        expected: impl std::fmt::Debug,
-    ) -> Self {
-        let expected = format!("{expected:?}").trim_matches('"').to_owned();
-        Self::Field { field, found: found.to_string(), expected }
-    }
-}
-
-/// Why a cube cannot be written.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum WriteCubeError {
-    /// The path names something that is not a file.
-    #[error("{} is not a file, expected a path to write a file at", path.display())]
-    NotAFile {
-        /// The path.
-        path: PathBuf,
-    },
-    /// The file cannot be made or filled.
-    #[error("{0}")]
-    Io(#[from] std::io::Error),
-    /// The container cannot be made.
-    #[error("{0}")]
-    Container(#[from] safetensors::SafeTensorError),
-}
+use crate::aside::write_whole;
+use crate::cube::error::{CubeFileError, ReadCubeError};
+use crate::cube::header::{Curves, ENTRY, Header, holds_observer};
+use crate::cube::{Cube, CubeError, Node};
+use crate::material::model::Model;
 
 const REFLECTANCE: &str = "reflectance";
 const DYE: &str = "dye";
@@ -167,11 +79,8 @@ impl Cube {
     /// The content of the cube's file.
     ///
     /// The same cube gives the same bytes.
-    ///
-    /// # Errors
-    ///
-    /// [`WriteCubeError`] if the container refuses, which it does for no valid cube.
-    pub fn to_bytes(&self) -> Result<Vec<u8>, WriteCubeError> {
+    #[must_use]
+    pub fn to_bytes(&self) -> Vec<u8> {
         let mut tensors = self.tensors();
         let header = self.header_of(&tensors);
         let content = tensors.iter().map(|t| (t.name, t.dtype, &t.shape[..], &t.bytes[..]));
@@ -179,7 +88,7 @@ impl Cube {
         tensors.push(Tensor::of_bytes(CHECKSUM, vec![checksum.len()], checksum));
         let metadata = HashMap::from([(ENTRY.to_owned(), header)]);
         let views = tensors.iter().map(|t| (t.name, t));
-        Ok(safetensors::serialize(views, Some(metadata))?)
+        safetensors::serialize(views, Some(metadata)).expect("arrays are as long as their shapes")
     }
 
     /// What the cube's file says of itself, as JSON: contract, model, fit, without the curves.
@@ -196,12 +105,11 @@ impl Cube {
     ///
     /// # Errors
     ///
-    /// [`WriteCubeError`] if the path cannot be written.
-    pub fn write(&self, path: &Path) -> Result<(), WriteCubeError> {
-        write_whole(path, &self.to_bytes()?).map_err(|error| match error {
-            AsideError::NotAFile => WriteCubeError::NotAFile { path: path.into() },
-            AsideError::Io(error) => error.into(),
-        })
+    /// [`CubeFileError::Write`] if the path cannot be written.
+    pub fn write(&self, path: impl AsRef<Path>) -> Result<(), CubeFileError> {
+        let path = path.as_ref();
+        write_whole(path, &self.to_bytes())
+            .map_err(|source| CubeFileError::Write { path: path.into(), source })
     }
 
     fn tensors(&self) -> Vec<Tensor> {
@@ -247,9 +155,13 @@ impl Cube {
     ///
     /// # Errors
     ///
-    /// [`ReadCubeError`] if it cannot be read or is not a cube; no content panics.
-    pub fn read(path: &Path) -> Result<Self, ReadCubeError> {
-        Self::from_bytes(&std::fs::read(path)?)
+    /// [`CubeFileError`] if it cannot be read or is not a cube; no content panics.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, CubeFileError> {
+        let path = path.as_ref();
+        let bytes = std::fs::read(path)
+            .map_err(|source| CubeFileError::Read { path: path.into(), source })?;
+        Self::from_bytes(&bytes)
+            .map_err(|source| CubeFileError::Content { path: path.into(), source })
     }
 
     /// Reads a cube from the content of its file.
@@ -387,7 +299,9 @@ fn read_nodes(file: &SafeTensors<'_>, n: usize, model: &Model) -> Result<Vec<Nod
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{DyeModel, DyeOptions, DyeSet, FitRecord};
+    use crate::cube::FitRecord;
+    use crate::material::dye_model::{DyeModel, DyeOptions};
+    use crate::material::dye_set::DyeSet;
     use proptest::prelude::*;
     use upglow_color::{Contract, Observer, Spectrum};
 
@@ -407,11 +321,11 @@ mod tests {
     #[test]
     fn a_cube_survives_its_file() {
         let cube = cube();
-        let bytes = cube.to_bytes().unwrap();
-        assert_eq!(bytes, cube.to_bytes().unwrap());
+        let bytes = cube.to_bytes();
+        assert_eq!(bytes, cube.to_bytes());
         let back = Cube::from_bytes(&bytes).unwrap();
         assert_eq!(back, cube);
-        assert_eq!(back.to_bytes().unwrap(), bytes);
+        assert_eq!(back.to_bytes(), bytes);
     }
 
     /// A cube of the standard observer with samples edited by their index and value.
@@ -431,11 +345,11 @@ mod tests {
     #[test]
     fn a_cube_of_another_observer_survives_its_file() {
         let cube = with_observer(|_, value| 0.99 * value);
-        let bytes = cube.to_bytes().unwrap();
+        let bytes = cube.to_bytes();
         let back = Cube::from_bytes(&bytes).unwrap();
         assert_eq!(back, cube);
         assert_eq!(back.contract().observer.name(), "glasses");
-        assert_eq!(back.to_bytes().unwrap(), bytes);
+        assert_eq!(back.to_bytes(), bytes);
     }
 
     #[test]
@@ -448,7 +362,7 @@ mod tests {
 
     #[test]
     fn a_file_cut_short_anywhere_is_refused() {
-        let bytes = cube().to_bytes().unwrap();
+        let bytes = cube().to_bytes();
         for length in (0..bytes.len()).step_by(997).chain([bytes.len() - 1]) {
             assert!(Cube::from_bytes(&bytes[..length]).is_err(), "{length}");
         }
@@ -457,7 +371,7 @@ mod tests {
     proptest! {
         #[test]
         fn an_altered_byte_anywhere_is_refused(place in any::<usize>(), change in 1_u8..) {
-            let mut bytes = cube().to_bytes().unwrap();
+            let mut bytes = cube().to_bytes();
             let index = place % bytes.len();
             bytes[index] ^= change;
             prop_assert!(Cube::from_bytes(&bytes).is_err(), "{index}");
@@ -510,19 +424,30 @@ mod tests {
             message("\"resolution\":3", "\"resolution\":4"),
             "tensor reflectance is F32 [3, 3, 3, 3], expected F32 [4, 4, 4, 3]"
         );
-        assert!(message("\"bradford\"", "\"cat02\"").starts_with("header field adaptation is"));
-        assert!(message("[0.713,0.293]", "[0.165,0.83]").starts_with("header field rgb_space is"));
+        assert_eq!(
+            message("\"bradford\"", "\"cat02\""),
+            "header field adaptation: unknown adaptation \"cat02\", expected bradford or none"
+        );
+        assert_eq!(
+            message("\"pooled\"", "\"layered\""),
+            "header field mixing: unknown mixing \"layered\", expected pooled or separate"
+        );
+        assert_eq!(
+            message("[300,830,1]", "[300,830,2]"),
+            "header field table_grid_nm is [300, 830, 2], expected [300, 830, 1]"
+        );
+        assert!(message("[0.713,0.293]", "[0.165,0.83]").starts_with("header field rgb_space: "));
         assert!(message("\"resolution\":3", "\"resolution\":-3").starts_with("header: "));
     }
 
     #[test]
     fn the_message_says_what_was_found_and_expected() {
         let message = |bytes: &[u8]| Cube::from_bytes(bytes).unwrap_err().to_string();
-        let mut bytes = cube().to_bytes().unwrap();
+        let mut bytes = cube().to_bytes();
         let last = bytes.len() - 1;
         bytes[last] ^= 1;
         assert!(message(&bytes).starts_with("checksum "));
-        let text = String::from_utf8_lossy(&cube().to_bytes().unwrap()).into_owned();
+        let text = String::from_utf8_lossy(&cube().to_bytes()).into_owned();
         assert!(text.contains("format_version"));
         assert!(message(b"P6 640 480 255 ...").starts_with("not a whole safetensors file"));
     }
@@ -531,7 +456,7 @@ mod tests {
     fn a_cube_is_not_written_over_a_folder() {
         let folder = tempfile::tempdir().unwrap();
         let error = cube().write(folder.path()).unwrap_err().to_string();
-        let expected = "is not a file, expected a path to write a file at";
-        assert_eq!(error, format!("{} {expected}", folder.path().display()));
+        let expected = "not a file, expected a path to write a file at";
+        assert_eq!(error, format!("{}: {expected}", folder.path().display()));
     }
 }

@@ -1,77 +1,65 @@
-//! Drawing wavelengths in proportion to what a [`PackedMixture`] makes of them: `sampling.rs` for
-//! inner loops, with the same measure.
+//! Choosing between what a [`crate::PackedMixture`] carries by reflection and by its lobes, and
+//! drawing from a lobe; the measure is that of the trait [`crate::Bispectral`].
 
-use fearless_simd::Simd;
-
+use fearless_simd::{Simd, f32x4};
 use upglow_color::rounding::to_single;
 
-use crate::curve_table::{DyeNumbers, whole};
-use crate::material::Lobe;
-use crate::packed_mixture::{PackedMixture, PerLobe, sum};
-use crate::packed_node::{PackedBells, PackedDyes};
-use crate::{Accounting, Draw, Fluorescence, Model, Sample};
+use crate::bispectral::{Draw, Sample};
+use crate::material::Fluorescence;
+use crate::material::formula::{Accounting, Mixing, PerLobe};
+use crate::material::lobe::Lobe;
+use crate::material::model::Model;
+use crate::packed::curve_table::DyeNumbers;
+use crate::packed::model::PackedModel;
+use crate::packed::node::{PackedBells, PackedDyes};
+use crate::packed::vector::{sum, whole};
 
-impl<'t> PackedMixture<'t> {
-    #[inline(always)]
-    pub(crate) fn leaving<S: Simd>(&self, simd: S, out_nm: f32, emission: PerLobe<S>) -> Shares<S> {
-        let absorbed = self.pairs_absorbed(simd, out_nm);
-        Shares {
-            elastic: self.reflectance_through(simd, out_nm, absorbed),
-            lobes: self.leaving_shares(simd, emission),
-        }
-    }
+/// A lobe that wavelengths are drawn from.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct DrawnLobe<'t> {
+    pub(crate) model: &'t PackedModel,
+    /// [`crate::PackedNode::fluorescence`] of the lobe's corner.
+    pub(crate) numbers: [f32; 4],
+    /// Which of the corner's, 0 or 1.
+    pub(crate) lobe: usize,
+}
 
+impl<'t> DrawnLobe<'t> {
+    /// An incident wavelength with the density of what the lobe returns, from `u` in 0..1.
     #[inline(always)]
-    pub(crate) fn arriving<S: Simd>(&self, simd: S, in_nm: f32) -> (PerLobe<S>, Shares<S>) {
-        let absorbed = self.pairs_absorbed(simd, in_nm);
-        let returned = self.returned_of(simd, in_nm, absorbed);
-        let elastic = self.reflectance_through(simd, in_nm, absorbed);
-        (returned, Shares { elastic, lobes: self.arriving_shares(simd, returned) })
-    }
-
-    /// An incident wavelength with the density of what a lobe returns, from `u` in 0..1.
-    #[inline(always)]
-    pub(crate) fn draw_absorbed<S: Simd>(&self, simd: S, lobe: ChosenLobe, u: f32) -> f32 {
-        match &self.table.model {
+    pub(crate) fn draw_absorbed<S: Simd>(self, simd: S, u: f32) -> f32 {
+        match &self.model.model {
             Model::Dyes(model) if model.options().accounting == Accounting::Energy => {
-                let (dye, u) = self.pick_dye(simd, lobe, |dye| dye.absorbed_nm, u);
-                self.table.curves.absorbing.quantile(simd, dye, u)
+                let (dye, u) = self.pick_dye(simd, |dye| dye.absorbed_nm, u);
+                self.model.curves.absorbing.quantile(simd, dye, u)
             }
-            _ => {
-                to_single(self.lobe(simd, lobe).map_or(0.0, |lobe| lobe.sample_absorbed(u.into())))
-            }
+            _ => to_single(self.lobe(simd).map_or(0.0, |lobe| lobe.sample_absorbed(u.into()))),
         }
     }
 
-    /// An outgoing wavelength with the density of a lobe's emission, from `u` in 0..1.
+    /// An outgoing wavelength with the density of the lobe's emission, from `u` in 0..1.
     #[inline(always)]
-    pub(crate) fn draw_emitted<S: Simd>(&self, simd: S, lobe: ChosenLobe, u: f32) -> f32 {
-        match &self.table.model {
+    pub(crate) fn draw_emitted<S: Simd>(self, simd: S, u: f32) -> f32 {
+        match &self.model.model {
             Model::Dyes(_) => {
-                let (dye, u) = self.pick_dye(simd, lobe, |dye| dye.emitted, u);
-                self.table.curves.emitting.quantile(simd, dye, u)
+                let (dye, u) = self.pick_dye(simd, |dye| dye.emitted, u);
+                self.model.curves.emitting.quantile(simd, dye, u)
             }
-            _ => to_single(self.lobe(simd, lobe).map_or(0.0, |lobe| lobe.sample_emitted(u.into()))),
+            _ => to_single(self.lobe(simd).map_or(0.0, |lobe| lobe.sample_emitted(u.into()))),
         }
     }
 
-    /// One of a lobe's dyes in proportion to an area of its curve, and what is left of `u` to draw
+    /// One of the lobe's dyes in proportion to an area of its curve, and what is left of `u` to draw
     /// from it.
     #[inline(always)]
-    fn pick_dye<S: Simd>(
-        &self,
-        simd: S,
-        ChosenLobe { corner, lobe }: ChosenLobe,
-        area: impl Fn(&DyeNumbers) -> f32,
-        u: f32,
-    ) -> (u32, f32) {
-        let PackedDyes { weight, first, .. } = PackedDyes::from(self.fluorescence.each_ref());
-        let first = whole(simd, first[corner]);
-        if self.table.is_separate() {
-            return (first + lobe, u);
+    fn pick_dye<S: Simd>(self, simd: S, area: impl Fn(&DyeNumbers) -> f32, u: f32) -> (u32, f32) {
+        let PackedDyes { weight, first, .. } = self.numbers.into();
+        let first = whole(simd, first);
+        if self.model.mixing == Mixing::Separate {
+            return (first + u32::from(self.lobe > 0), u);
         }
-        let [one, two] = self.table.curves.pair(first);
-        let [one, two] = [(1.0 - weight[corner]) * area(one), weight[corner] * area(two)];
+        let [one, two] = self.model.curves.pair(first);
+        let [one, two] = [(1.0 - weight) * area(one), weight * area(two)];
         let target = u * (one + two);
         // Selected, not branched to: nothing foretells which it is.
         let second = target >= one && two > 0.0;
@@ -79,16 +67,10 @@ impl<'t> PackedMixture<'t> {
         (first + u32::from(second), (target - start) / share)
     }
 
-    /// Lobes of a corner.
-    #[inline(always)]
-    pub(crate) fn lobes(&self) -> u32 {
-        if self.table.is_separate() { 2 } else { 1 }
-    }
-
-    fn lobe<S: Simd>(&self, simd: S, ChosenLobe { corner, lobe }: ChosenLobe) -> Option<Lobe<'t>> {
-        let numbers = self.fluorescence.map(|numbers| f64::from(numbers[corner]));
-        let model = &self.table.model;
-        let fluorescence = match model {
+    /// The lobe in double precision.
+    fn lobe<S: Simd>(self, simd: S) -> Option<Lobe<'t>> {
+        let numbers = self.numbers.map(f64::from);
+        let fluorescence = match &self.model.model {
             Model::Reflectance => Fluorescence::None,
             Model::Dyes(_) => {
                 let PackedDyes { weight, concentration, first, .. } = numbers.into();
@@ -104,7 +86,7 @@ impl<'t> PackedMixture<'t> {
                 }
             }
         };
-        fluorescence.lobes(model).nth(lobe as usize)
+        fluorescence.lobes(&self.model.model).nth(self.lobe)
     }
 }
 
@@ -121,12 +103,12 @@ pub(crate) fn shifted(nm: f32, reradiation_per_nm: f32, throughput: f32) -> Samp
 
 /// What is carried at one wavelength by reflection and by each fluorescent lobe.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Shares<S: Simd> {
+pub(crate) struct Shares<V> {
     pub(crate) elastic: f32,
-    lobes: PerLobe<S>,
+    pub(crate) lobes: PerLobe<V>,
 }
 
-impl<S: Simd> Shares<S> {
+impl<S: Simd> Shares<f32x4<S>> {
     #[inline(always)]
     pub(crate) fn total(&self) -> f32 {
         self.elastic + sum(self.lobes[0] + self.lobes[1])
@@ -135,7 +117,12 @@ impl<S: Simd> Shares<S> {
     /// What `u` in 0..1 falls on, `Some(None)` for the elastic part; `None` where nothing is
     /// carried.
     #[inline(always)]
-    pub(crate) fn choose(&self, lobes: u32, throughput: f32, u: f32) -> Option<Option<ChosenLobe>> {
+    pub(crate) fn choose(
+        &self,
+        lobes: usize,
+        throughput: f32,
+        u: f32,
+    ) -> Option<Option<ChosenLobe>> {
         if throughput <= 0.0 {
             return None;
         }
@@ -146,11 +133,11 @@ impl<S: Simd> Shares<S> {
     /// The lobe that `rest` falls on, the last that carries anything for a rest beyond all. Counted
     /// without a branch: nothing foretells the corner.
     #[inline(always)]
-    fn choose_lobe(&self, lobes: u32, rest: f32) -> Option<ChosenLobe> {
+    fn choose_lobe(&self, lobes: usize, rest: f32) -> Option<ChosenLobe> {
         let mut chosen = None;
         let mut end = 0.0;
         for lobe in 0..lobes {
-            let shares: [f32; 4] = self.lobes[lobe as usize].into();
+            let shares: [f32; 4] = self.lobes[lobe].into();
             let (mut passed, mut last) = (0, 0);
             for corner in 0..4 {
                 end += shares[corner];
@@ -168,12 +155,12 @@ impl<S: Simd> Shares<S> {
     }
 }
 
-/// A lobe of a [`PackedMixture`].
+/// A lobe of a [`crate::PackedMixture`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ChosenLobe {
-    corner: usize,
+    pub(crate) corner: usize,
     /// Which of the corner's, 0 or 1.
-    lobe: u32,
+    pub(crate) lobe: usize,
 }
 
 /// 0 where there is nothing to share.
@@ -185,8 +172,10 @@ pub(crate) fn ratio(part: f32, whole: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bispectral::Bispectral;
+    use crate::cube::{Cube, FitRecord};
+    use crate::packed::lookup_table::LookupTable;
     use crate::random::{Random, assert_drawn_from, models};
-    use crate::{Bispectral, Cube, FitRecord, LookupTable};
     use upglow_color::Contract;
 
     const DRAWS: usize = 20_000;

@@ -1,0 +1,122 @@
+//! Why a cube's file cannot be read or written.
+
+use std::error::Error;
+use std::fmt::Debug;
+use std::path::PathBuf;
+
+use crate::aside::AsideError;
+use crate::cube::CubeError;
+
+/// Why a cube's file cannot be read or written: where, and the cause.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum CubeFileError {
+    /// The file cannot be read.
+    #[error("{}: {source}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The file is not a cube that this program reads.
+    #[error("{}: {source}", path.display())]
+    Content {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: ReadCubeError,
+    },
+    /// The file cannot be written.
+    #[error("{}: {source}", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: AsideError,
+    },
+}
+
+/// Why the content of a file is not a cube that this program reads.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReadCubeError {
+    /// The file is not a whole safetensors file.
+    #[error("not a whole safetensors file ({0}), expected a cube made by upglow")]
+    Container(#[from] safetensors::SafeTensorError),
+    /// There is no header entry of ours.
+    #[error("no `upglow` entry in the header, expected a cube made by upglow")]
+    NotACube,
+    /// The file is of another version.
+    #[error("format version {found}, expected 1 to {newest}")]
+    Version {
+        /// Version of the file.
+        found: u32,
+        /// The newest version that this program reads.
+        newest: u32,
+    },
+    /// The header is not what this version writes.
+    #[error("header: {0}")]
+    Header(#[source] serde_json::Error),
+    /// A field of the header has another value than it must have.
+    #[error("header field {field} is {found}, expected {expected}")]
+    Field {
+        /// The field.
+        field: &'static str,
+        /// Its value.
+        found: String,
+        /// What it should be.
+        expected: String,
+    },
+    /// A field of the header has a value that makes nothing.
+    #[error("header field {field}: {source}")]
+    Value {
+        /// The field.
+        field: &'static str,
+        /// What is wrong with its value.
+        source: Box<dyn Error + Send + Sync>,
+    },
+    /// A tensor is absent or has another type or shape.
+    #[error("tensor {name} is {found}, expected {expected}")]
+    Tensor {
+        /// The tensor.
+        name: &'static str,
+        /// Its type and shape, or "absent".
+        found: String,
+        /// What it should be.
+        expected: String,
+    },
+    /// The content is not what was written.
+    #[error("checksum {found}, expected {expected}: the file was altered or damaged")]
+    Checksum {
+        /// SHA-256 of the content, first eight digits.
+        found: String,
+        /// SHA-256 in the file, first eight digits.
+        expected: String,
+    },
+    /// The numbers do not make a cube.
+    #[error(transparent)]
+    Cube(#[from] CubeError),
+}
+
+impl ReadCubeError {
+    /// Checks that a field has the value that it must have.
+    pub(crate) fn check<T: PartialEq + Debug + ?Sized>(
+        field: &'static str,
+        found: &T,
+        expected: &T,
+    ) -> Result<(), Self> {
+        if found == expected {
+            return Ok(());
+        }
+        let [found, expected] = [found, expected].map(|value| format!("{value:?}"));
+        Err(Self::Field { field, found, expected })
+    }
+
+    /// Makes an error about a field of the cause.
+    pub(crate) fn value<E: Error + Send + Sync + 'static>(
+        field: &'static str,
+    ) -> impl FnOnce(E) -> Self {
+        move |error| Self::Value { field, source: error.into() }
+    }
+}

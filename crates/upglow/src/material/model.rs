@@ -1,0 +1,30 @@
+//! What fluorescence is made of: measured dyes, or bells by formula.
+
+use crate::material::analytic_model::AnalyticModel;
+use crate::material::dye_model::DyeModel;
+
+/// How the fluorescence of a material is described, and by what rules it gives light back.
+///
+/// It is not `#[non_exhaustive]`, nor are [`crate::Fluorescence`], [`crate::Mixing`],
+/// [`crate::Accounting`] and [`crate::Interpolation`]: the compiler then names every place that a new
+/// one must be thought of, in this workspace and in a renderer.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Model {
+    /// No fluorescence.
+    Reflectance,
+    /// Two neighbors of a ring of measured dyes.
+    Dyes(DyeModel),
+    /// Absorption and emission by formula.
+    Analytic(AnalyticModel),
+}
+
+impl Model {
+    /// The name that files and options use: `reflectance`, `dyes` or `analytic`.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Reflectance => "reflectance",
+            Self::Dyes(_) => "dyes",
+            Self::Analytic(_) => "analytic",
+        }
+    }
+}

@@ -1,0 +1,13 @@
+//! Materials in the numbers that inner loops and devices read: single precision, in vectors.
+
+pub(crate) mod bells;
+pub(crate) mod color_table;
+pub(crate) mod curve_table;
+mod inverse_root;
+pub(crate) mod lookup_table;
+pub(crate) mod mixture;
+pub(crate) mod model;
+pub(crate) mod node;
+mod quantile_table;
+mod sampling;
+mod vector;
