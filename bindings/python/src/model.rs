@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use pyo3::prelude::*;
 use upglow::{Accounting, AnalyticModel, DyeModel, DyeOptions, DyeSetError, Mixing, QuantumYield};
-use upglow_color::{MeasuredDye, dye_set_names};
+use upglow_color::MeasuredDye;
 
 use crate::errors::{os_error, value_error};
 use crate::word::Word;
@@ -22,7 +22,7 @@ impl DyeSet {
     /// The names of the built-in sets.
     #[staticmethod]
     fn names() -> Vec<&'static str> {
-        dye_set_names().collect()
+        MeasuredDye::set_names().collect()
     }
 
     /// The built-in set of this name.

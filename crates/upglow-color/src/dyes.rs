@@ -42,6 +42,32 @@ impl MeasuredDye {
         let (name, provenance) = (name.to_owned(), String::new());
         Ok(Self { name, absorption, emission, quantum_yield: None, provenance })
     }
+
+    /// Every measured dye in the tables, in the order of their names.
+    pub fn all() -> impl Iterator<Item = Self> {
+        DYES.iter().map(Self::from)
+    }
+
+    /// The measured dye of this name.
+    pub fn named(name: &str) -> Option<Self> {
+        DYES.iter().find(|row| row.name == name).map(Self::from)
+    }
+
+    /// The names of the built-in sets.
+    pub fn set_names() -> impl Iterator<Item = &'static str> {
+        DYE_SETS.iter().map(|(stored, _)| {
+            RENAMED.iter().find(|(_, old)| old == stored).map_or(*stored, |(name, _)| *name)
+        })
+    }
+
+    /// The dyes of a built-in set in ring order: sorted by emission hue, the last beside the first.
+    /// With them comes the name of the set in files.
+    pub fn set(name: &str) -> Option<(&'static str, Vec<Self>)> {
+        let stored = RENAMED.iter().find(|(new, _)| *new == name).map_or(name, |(_, old)| *old);
+        let (stored, dyes) = DYE_SETS.iter().find(|(known, _)| *known == stored)?;
+        let dyes: Option<Vec<_>> = dyes.iter().map(|dye| Self::named(dye)).collect();
+        Some((*stored, dyes?))
+    }
 }
 
 impl From<&DyeRow> for MeasuredDye {
@@ -61,34 +87,8 @@ impl From<&DyeRow> for MeasuredDye {
     }
 }
 
-/// Every measured dye in the tables, in the order of their names.
-pub fn measured_dyes() -> impl Iterator<Item = MeasuredDye> {
-    DYES.iter().map(MeasuredDye::from)
-}
-
-/// The measured dye of this name.
-pub fn measured_dye(name: &str) -> Option<MeasuredDye> {
-    DYES.iter().find(|row| row.name == name).map(MeasuredDye::from)
-}
-
 /// Sets whose word is not the name that cubes were first written with; files keep that name.
 const RENAMED: [(&str, &str); 1] = [("konig8", "seed8")];
-
-/// The names of the built-in sets.
-pub fn dye_set_names() -> impl Iterator<Item = &'static str> {
-    DYE_SETS.iter().map(|(stored, _)| {
-        RENAMED.iter().find(|(_, old)| old == stored).map_or(*stored, |(name, _)| *name)
-    })
-}
-
-/// The dyes of a built-in set in ring order: sorted by emission hue, the last beside the first.
-/// With them comes the name of the set in files.
-pub fn dye_set(name: &str) -> Option<(&'static str, Vec<MeasuredDye>)> {
-    let stored = RENAMED.iter().find(|(new, _)| *new == name).map_or(name, |(_, stored)| *stored);
-    let (stored, dyes) = DYE_SETS.iter().find(|(known, _)| *known == stored)?;
-    let dyes: Option<Vec<_>> = dyes.iter().map(|dye| measured_dye(dye)).collect();
-    Some((*stored, dyes?))
-}
 
 #[cfg(test)]
 mod tests {
@@ -96,7 +96,7 @@ mod tests {
 
     #[test]
     fn a_dye_is_what_its_samples_are() {
-        let known = measured_dye("ATTO_390").unwrap();
+        let known = MeasuredDye::named("ATTO_390").unwrap();
         let nm: Vec<f64> = Grid::FINE.wavelengths_nm().collect();
         let (absorption, emission) = (known.absorption.values(), known.emission.values());
         let sampled = MeasuredDye::from_samples("ATTO_390", &nm, absorption, emission).unwrap();
@@ -109,9 +109,10 @@ mod tests {
 
     #[test]
     fn every_set_is_complete_and_every_curve_is_a_fraction() {
-        let sizes: Vec<usize> = dye_set_names().map(|n| dye_set(n).unwrap().1.len()).collect();
+        let sizes: Vec<usize> =
+            MeasuredDye::set_names().map(|n| MeasuredDye::set(n).unwrap().1.len()).collect();
         assert_eq!(sizes, [8, 8, 14]);
-        for dye in measured_dyes() {
+        for dye in MeasuredDye::all() {
             for curve in [&dye.absorption, &dye.emission] {
                 assert!(curve.values().iter().all(|v| (0.0..=1.0).contains(v)), "{}", dye.name);
                 assert!(curve.integral() > 1.0, "{}", dye.name);

@@ -33,7 +33,7 @@ pub fn lab_from_xyz(xyz: Xyz, white: Xyz) -> Lab {
 }
 
 /// The coordinates, and their derivatives `[L a b][X Y Z]`.
-pub fn lab_jacobian(xyz: Xyz, white: Xyz) -> (Lab, Matrix3) {
+pub(crate) fn lab_jacobian(xyz: Xyz, white: Xyz) -> (Lab, Matrix3) {
     let f = [0, 1, 2].map(|k| compress(xyz.0[k] / white.0[k]));
     let [dx, dy, dz] = [0, 1, 2].map(|k| f[k].1 / white.0[k]);
     let [fx, fy, fz] = f.map(|(value, _)| value);

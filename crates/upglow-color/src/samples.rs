@@ -189,7 +189,7 @@ pub enum SamplesError {
 /// # Errors
 ///
 /// [`SamplesError`] names the index, from 0, and what was expected there.
-pub fn curves_from_samples<const N: usize>(
+pub(crate) fn curves_from_samples<const N: usize>(
     wavelengths_nm: &[f64],
     columns: [(&str, &[f64]); N],
     rules: SampleRules,

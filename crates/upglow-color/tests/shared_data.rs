@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use upglow_color::{Grid, Illuminant, Observer, measured_dyes};
+use upglow_color::{Grid, Illuminant, MeasuredDye, Observer};
 
 /// A file of the optional data folder, or the name of the test that is skipped without it.
 fn shared(test: &str, file: &str) -> Option<String> {
@@ -47,7 +47,7 @@ fn the_observer_is_the_published_table() {
 
 #[test]
 fn the_dyes_are_the_published_curves_at_every_fifth_nanometer() {
-    for dye in measured_dyes() {
+    for dye in MeasuredDye::all() {
         let test = "the_dyes_are_the_published_curves_at_every_fifth_nanometer";
         let Some(text) = shared(test, &format!("dyes/{}.csv", dye.name)) else {
             return;

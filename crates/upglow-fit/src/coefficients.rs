@@ -33,18 +33,18 @@ pub fn fit_coefficients(
     let options = FitOptions { slope_max_per_nm, ..FitOptions::default() };
     let fitter = Fitter::new(contract, &Model::Reflectance, options)?;
     let blank = vec![[0.0; 3]; 3 * resolution.pow(3)];
-    let levels = CoefficientTable::levels(resolution);
-    let blank = CoefficientTable::new(levels.clone(), blank, None)?;
+    let brightness = CoefficientTable::levels(resolution);
+    let blank = CoefficientTable::new(brightness.clone(), blank, None)?;
     let count = 3 * resolution * resolution;
     let columns = Stage::new("fitting", count, watch)
         .each(count, |column| Column { fitter: &fitter, table: &blank, column }.follow())?;
     let mut nodes = Vec::with_capacity(blank.nodes().len());
     for of_channel in columns.chunks(resolution * resolution) {
-        for level in 0..resolution {
-            nodes.extend(of_channel.iter().map(|column| column[level]));
+        for step in 0..resolution {
+            nodes.extend(of_channel.iter().map(|column| column[step]));
         }
     }
-    Ok(CoefficientTable::new(levels, nodes, Some(Integrator::of(contract)))?)
+    Ok(CoefficientTable::new(brightness, nodes, Some(Integrator::of(contract)))?)
 }
 
 /// CIEDE2000 of what a reader finds in `table` for `points` random colors of the contract's RGB
@@ -85,30 +85,30 @@ const GREATEST_FLAT: f64 = 8192.0;
 
 impl Column<'_> {
     fn follow(&self) -> Vec<[f32; 3]> {
-        let levels = self.table.brightness();
-        let middle = levels.partition_point(|level| *level < 0.5).min(levels.len() - 2);
+        let brightness = self.table.brightness();
+        let middle = brightness.partition_point(|value| *value < 0.5).min(brightness.len() - 2);
         let first = self.start(middle);
-        let mut found = vec![first; levels.len()];
-        for level in (0..middle).rev() {
-            found[level] = self.from(level, found[level + 1]);
+        let mut found = vec![first; brightness.len()];
+        for step in (0..middle).rev() {
+            found[step] = self.from(step, found[step + 1]);
         }
-        for level in middle + 1..levels.len() {
-            found[level] = self.from(level, found[level - 1]);
+        for step in middle + 1..brightness.len() {
+            found[step] = self.from(step, found[step - 1]);
         }
-        let numbers = found.iter().enumerate().map(|(level, near)| self.stored(level, *near));
+        let numbers = found.iter().enumerate().map(|(step, near)| self.stored(step, *near));
         numbers.map(|s| [s.c0, s.c1, s.c2].map(to_single)).collect()
     }
 
     /// Coefficients of 1, t, t² that the general search finds.
-    fn start(&self, level: usize) -> [f64; 3] {
-        let rgb = self.table.node_rgb(self.place(level));
+    fn start(&self, step: usize) -> [f64; 3] {
+        let rgb = self.table.node_rgb(self.place(step));
         let fit = self.fitter.fit(rgb).expect("nodes are in 0..=1");
         Shape::Free.numbers(fit.reflectance)
     }
 
-    /// Coefficients that show the color of a level, near those of its neighbor.
-    fn from(&self, level: usize, near: [f64; 3]) -> [f64; 3] {
-        let problem = self.problem(level);
+    /// Coefficients that show the color of a step of brightness, near those of its neighbor.
+    fn from(&self, step: usize, near: [f64; 3]) -> [f64; 3] {
+        let problem = self.problem(step);
         let free = solve(&problem.in_shape(Shape::Free), near, &SolverOptions::default()).x;
         let limit_per_nm = self.fitter.context.slope_limit_per_nm;
         if Shape::Free.edge(free).slope_per_nm.abs() <= limit_per_nm {
@@ -121,8 +121,8 @@ impl Column<'_> {
     }
 
     /// A gray is flat whatever its neighbors are.
-    fn stored(&self, level: usize, found: [f64; 3]) -> Sigmoid {
-        let job = Job { context: &self.fitter.context, goal: self.goal(level) };
+    fn stored(&self, step: usize, found: [f64; 3]) -> Sigmoid {
+        let job = Job { context: &self.fitter.context, goal: self.goal(step) };
         let flat =
             |x: f64| Sigmoid { c0: 0.0, c1: 0.0, c2: x.clamp(-GREATEST_FLAT, GREATEST_FLAT) };
         match job.gray() {
@@ -131,23 +131,23 @@ impl Column<'_> {
         }
     }
 
-    fn place(&self, level: usize) -> [usize; 4] {
+    fn place(&self, step: usize) -> [usize; 4] {
         let (n, column) = (self.table.resolution(), self.column);
-        [column / (n * n), level, column / n % n, column % n]
+        [column / (n * n), step, column / n % n, column % n]
     }
 
-    fn goal(&self, level: usize) -> Goal {
+    fn goal(&self, step: usize) -> Goal {
         let colorimetry = self.fitter.model().colorimetry();
-        let color = colorimetry.xyz_from_rgb(self.table.node_rgb(self.place(level)));
+        let color = colorimetry.xyz_from_rgb(self.table.node_rgb(self.place(step)));
         Metric::De2000.goal(colorimetry, color)
     }
 
-    fn problem(&self, level: usize) -> LitProblem<'_> {
-        let value = f64::from(self.table.brightness()[level]);
+    fn problem(&self, step: usize) -> LitProblem<'_> {
+        let value = f64::from(self.table.brightness()[step]);
         // Black, at any exposure, is black.
         let exposure = if value > 0.0 { (LEAST_SEEN / value).max(1.0) } else { 1.0 };
         let colorimetry = self.fitter.model().colorimetry();
-        let lit = self.goal(level).xyz() * exposure;
+        let lit = self.goal(step).xyz() * exposure;
         let goal = Metric::De2000.goal(colorimetry, lit);
         let passive = PassiveProblem { sums: &self.fitter.context.sums, goal, shape: Shape::Free };
         LitProblem { passive, exposure }

@@ -3,8 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use upglow_color::{
-    Grid, MeasuredDye, Observer, SampleRules, Spectrum, SpectrumCsvError, Xyz, dye_set,
-    dye_set_names, read_columns,
+    Grid, MeasuredDye, Observer, SampleRules, Spectrum, SpectrumCsvError, Xyz, read_columns,
 };
 
 /// A ring of measured dyes: neighbors can be mixed, the last is beside the first.
@@ -24,7 +23,7 @@ pub enum DyeSetError {
     /// Neither a built-in set nor a folder.
     #[error(
         "unknown dye set {found:?}, expected {} or a folder of CSV files",
-        dye_set_names().collect::<Vec<_>>().join(", ")
+        MeasuredDye::set_names().collect::<Vec<_>>().join(", ")
     )]
     Unknown {
         /// The name given.
@@ -118,7 +117,7 @@ impl DyeSet {
     ///
     /// [`DyeSetError::Unknown`] lists the names there are.
     pub fn named(name: &str) -> Result<Self, DyeSetError> {
-        let set = dye_set(name).ok_or_else(|| DyeSetError::Unknown { found: name.into() });
+        let set = MeasuredDye::set(name).ok_or_else(|| DyeSetError::Unknown { found: name.into() });
         let (stored_name, dyes) = set?;
         Self::new(stored_name, dyes)
     }
@@ -258,7 +257,7 @@ mod tests {
     #[test]
     fn built_in_rings_are_in_the_order_of_their_hue() {
         let matching = Observer::cie_1931_2deg().on(Grid::FINE);
-        for name in dye_set_names() {
+        for name in MeasuredDye::set_names() {
             let set = DyeSet::named(name).unwrap();
             let hues: Vec<f64> = set.dyes().iter().map(|d| emission_hue(d, &matching)).collect();
             let next = |i: usize| hues[(i + 1) % hues.len()];
