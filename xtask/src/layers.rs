@@ -9,18 +9,20 @@ use crate::step::{StepError, metadata};
 /// Each crate of the workspace, and the crates of the workspace that it may depend on.
 ///
 /// Development dependencies count as well: a test that needs an upper layer belongs there.
-const ALLOWED: [(&str, &[&str]); 11] = [
+const ALLOWED: [(&str, &[&str]); 12] = [
     ("upglow-color", &[]),
     ("upglow", &["upglow-color"]),
     ("upglow-shader", &["upglow", "upglow-color"]),
     ("upglow-fit", &["upglow", "upglow-color"]),
     ("upglow-image", &["upglow-fit", "upglow", "upglow-color"]),
+    ("upglow-svg", &[]),
     ("upglow-terminal", &["upglow-fit", "upglow", "upglow-color"]),
-    ("upglow-study", &["upglow-terminal", "upglow-fit", "upglow", "upglow-color"]),
+    ("upglow-study", &["upglow-terminal", "upglow-svg", "upglow-fit", "upglow", "upglow-color"]),
     (
         "upglow-cli",
         &[
             "upglow-terminal",
+            "upglow-svg",
             "upglow-image",
             "upglow-fit",
             "upglow-shader",

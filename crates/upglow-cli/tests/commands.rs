@@ -207,7 +207,8 @@ fn an_ultraviolet_lamp_shows_what_fluoresces() {
 #[test]
 fn curves_are_drawn_as_svg() {
     let folder = folder_with_cube("");
-    folder.done("color cube 0.9 0 0.9 --plot figure.svg");
+    let text = folder.done("color cube 0.9 0 0.9 --plot figure.svg");
+    assert!(text.contains("figure.svg") && !text.contains('\u{1b}'), "{text}");
     let svg = String::from_utf8(folder.read("figure.svg")).unwrap();
     assert!(svg.starts_with("<svg") && svg.ends_with("</svg>\n"));
     assert_eq!(svg.matches("<polyline").count(), 3);

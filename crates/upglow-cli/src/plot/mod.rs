@@ -4,6 +4,7 @@ pub(crate) mod svg;
 
 use upglow::{Bispectral, Material, Mixture, Model, Sigmoid};
 use upglow_color::{Colorimetry, Grid, LinearRgb, srgb_encoded};
+use upglow_svg::{byte, hex};
 
 /// First wavelength of every picture, nm.
 const FIRST_NM: f64 = 300.0;
@@ -110,19 +111,10 @@ const OUTSIDE: f64 = 1e-3;
 impl Swatch {
     /// The nearest color that sRGB holds, component by component, from linear sRGB.
     pub(crate) fn from_linear(rgb: LinearRgb) -> Self {
-        let level = |v: f64| format!("{:02x}", eight_bits(srgb_encoded(v.clamp(0.0, 1.0))));
+        let component = |v: f64| byte(255.0 * srgb_encoded(v.clamp(0.0, 1.0)));
         let inside = |v: &f64| (-OUTSIDE..=1.0 + OUTSIDE).contains(v);
-        Self { hex: format!("#{}", rgb.0.map(level).concat()), clipped: !rgb.0.iter().all(inside) }
+        Self { hex: hex(rgb.0.map(component)), clipped: !rgb.0.iter().all(inside) }
     }
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "the value is in 0..=1 and rounding is meant"
-)]
-fn eight_bits(value: f64) -> u8 {
-    (255.0 * value).round() as u8
 }
 
 #[cfg(test)]

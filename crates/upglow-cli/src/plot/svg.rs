@@ -1,6 +1,8 @@
 //! Curves as an SVG figure.
 
-use std::fmt::Write as _;
+use std::fmt::Display;
+
+use upglow_svg::{Element, escape};
 
 use super::{Curves, FIRST_NM, Figure, LAST_NM, Swatch};
 
@@ -19,6 +21,7 @@ const HIGHEST: f64 = 1.05;
 /// Left edge of the legend and the swatches.
 const SIDE: f64 = 668.0;
 const SWATCH: f64 = 100.0;
+const SWATCH_TOP: f64 = TOP + 122.0;
 
 /// Longer lines of the caption would leave the page at the font's usual width.
 const CAPTION_LETTERS: usize = 31;
@@ -42,26 +45,47 @@ struct Stroke {
 /// The figure as the text of an SVG file.
 pub(crate) fn draw(figure: &Figure<'_>) -> String {
     let strokes = strokes(figure.curves);
-    let mut svg = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{WIDTH}\" height=\"{HEIGHT}\" \
-         viewBox=\"0 0 {WIDTH} {HEIGHT}\" font-family=\"{FONT}\" font-size=\"14\" fill=\"{INK}\">\n\
-         <rect width=\"{WIDTH}\" height=\"{HEIGHT}\" fill=\"#ffffff\"/>\n"
-    );
-    svg += &axes();
+    let page = Element::new("rect").with("width", WIDTH).with("height", HEIGHT);
+    let mut elements = vec![page.with("fill", "#ffffff").empty()];
+    elements.extend(axes());
     if figure.curves.is_fluorescent() {
-        svg += &emission_area(figure.curves);
+        elements.push(emission_area(figure.curves));
     }
-    for stroke in &strokes {
-        let _ = writeln!(
-            svg,
-            "<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"2.4\" \
-             stroke-linejoin=\"round\" stroke-dasharray=\"{}\"/>",
-            stroke.points, stroke.color, stroke.dashes
-        );
+    elements.extend(strokes.iter().map(Stroke::curve));
+    elements.extend((0_u8..).zip(&strokes).flat_map(|(row, stroke)| stroke.legend(row)));
+    elements.extend(swatches(figure));
+    elements.extend(caption(figure));
+    let svg = Element::new("svg")
+        .with("xmlns", "http://www.w3.org/2000/svg")
+        .with("width", WIDTH)
+        .with("height", HEIGHT)
+        .with("viewBox", format_args!("0 0 {WIDTH} {HEIGHT}"))
+        .with("font-family", FONT)
+        .with("font-size", 14)
+        .with("fill", INK);
+    svg.around(format_args!("\n{}\n", elements.join("\n"))) + "\n"
+}
+
+impl Stroke {
+    fn curve(&self) -> String {
+        Element::new("polyline")
+            .with("points", &self.points)
+            .with("fill", "none")
+            .with("stroke", self.color)
+            .with("stroke-width", 2.4)
+            .with("stroke-linejoin", "round")
+            .with("stroke-dasharray", self.dashes)
+            .empty()
     }
-    svg += &legend(&strokes);
-    svg += &swatches(figure);
-    svg + "</svg>\n"
+
+    /// A piece of the curve and its name, beside the plot.
+    fn legend(&self, row: u8) -> [String; 2] {
+        let y = TOP + 12.0 + 24.0 * f64::from(row);
+        let piece = line(SIDE, y, SIDE + 30.0, y, self.color)
+            .with("stroke-width", 2.4)
+            .with("stroke-dasharray", self.dashes);
+        [piece.empty(), at("text", SIDE + 40.0, y + 5.0).around(self.name)]
+    }
 }
 
 fn strokes(curves: &Curves) -> Vec<Stroke> {
@@ -86,104 +110,108 @@ fn y_of(value: f64) -> f64 {
 }
 
 fn points(curve: impl Iterator<Item = (f64, f64)>) -> String {
-    let point = |(nm, value)| format!("{:.2},{:.2}", x_of(nm), y_of(value));
-    curve.map(point).collect::<Vec<_>>().join(" ")
+    upglow_svg::points(curve.map(|(nm, value)| [x_of(nm), y_of(value)]), hundredths)
+}
+
+fn hundredths(value: f64) -> String {
+    format!("{value:.2}")
+}
+
+fn at(name: &'static str, x: impl Display, y: impl Display) -> Element {
+    Element::new(name).with("x", x).with("y", y)
+}
+
+fn line(
+    x1: impl Display,
+    y1: impl Display,
+    x2: impl Display,
+    y2: impl Display,
+    color: &str,
+) -> Element {
+    Element::new("line")
+        .with("x1", x1)
+        .with("y1", y1)
+        .with("x2", x2)
+        .with("y2", y2)
+        .with("stroke", color)
 }
 
 fn emission_area(curves: &Curves) -> String {
     let area = points(curves.shown(&curves.emission));
-    format!(
-        "<polygon points=\"{LEFT},{BOTTOM} {area} {RIGHT},{BOTTOM}\" fill=\"#d55e00\" fill-opacity=\"0.08\"/>\n"
-    )
+    Element::new("polygon")
+        .with("points", format_args!("{LEFT},{BOTTOM} {area} {RIGHT},{BOTTOM}"))
+        .with("fill", "#d55e00")
+        .with("fill-opacity", 0.08)
+        .empty()
 }
 
 /// Grid, frame, ticks and names of the axes.
-fn axes() -> String {
-    let mut svg = String::new();
+fn axes() -> Vec<String> {
+    let mut elements = Vec::new();
     for nm in (300..=750).step_by(50) {
-        let x = x_of(f64::from(nm));
-        let _ = writeln!(
-            svg,
-            "<line x1=\"{x:.2}\" y1=\"{TOP}\" x2=\"{x:.2}\" y2=\"{BOTTOM}\" stroke=\"{FAINT}\"/>\n\
-             <line x1=\"{x:.2}\" y1=\"{BOTTOM}\" x2=\"{x:.2}\" y2=\"{}\" stroke=\"{INK}\"/>\n\
-             <text x=\"{x:.2}\" y=\"{}\" text-anchor=\"middle\">{nm}</text>",
-            BOTTOM + 6.0,
-            BOTTOM + 23.0
-        );
+        let x = hundredths(x_of(f64::from(nm)));
+        let number = at("text", &x, BOTTOM + 23.0).with("text-anchor", "middle");
+        elements.extend([
+            line(&x, TOP, &x, BOTTOM, FAINT).empty(),
+            line(&x, BOTTOM, &x, BOTTOM + 6.0, INK).empty(),
+            number.around(nm),
+        ]);
     }
     for tenths in (0..=10).step_by(2) {
-        let (value, y) = (f64::from(tenths) / 10.0, y_of(f64::from(tenths) / 10.0));
-        let _ = writeln!(
-            svg,
-            "<line x1=\"{LEFT}\" y1=\"{y:.2}\" x2=\"{RIGHT}\" y2=\"{y:.2}\" stroke=\"{FAINT}\"/>\n\
-             <line x1=\"{}\" y1=\"{y:.2}\" x2=\"{LEFT}\" y2=\"{y:.2}\" stroke=\"{INK}\"/>\n\
-             <text x=\"{}\" y=\"{:.2}\" text-anchor=\"end\">{value:.1}</text>",
-            LEFT - 6.0,
-            LEFT - 11.0,
-            y + 5.0
-        );
+        let value = f64::from(tenths) / 10.0;
+        let y = hundredths(y_of(value));
+        let number = at("text", LEFT - 11.0, hundredths(y_of(value) + 5.0));
+        elements.extend([
+            line(LEFT, &y, RIGHT, &y, FAINT).empty(),
+            line(LEFT - 6.0, &y, LEFT, &y, INK).empty(),
+            number.with("text-anchor", "end").around(format_args!("{value:.1}")),
+        ]);
     }
     let (middle_x, middle_y) = ((LEFT + RIGHT) / 2.0, (TOP + BOTTOM) / 2.0);
-    let _ = writeln!(
-        svg,
-        "<rect x=\"{LEFT}\" y=\"{TOP}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"{INK}\"/>\n\
-         <text x=\"{middle_x}\" y=\"{}\" text-anchor=\"middle\">wavelength / nm</text>\n\
-         <text transform=\"translate(24 {middle_y}) rotate(-90)\" text-anchor=\"middle\">share of incident light; emission relative to its peak</text>",
-        RIGHT - LEFT,
-        BOTTOM - TOP,
-        BOTTOM + 52.0
-    );
-    svg
+    let name_of_y = Element::new("text")
+        .with("transform", format_args!("translate(24 {middle_y}) rotate(-90)"))
+        .with("text-anchor", "middle");
+    elements.extend([
+        outlined(at("rect", LEFT, TOP), [RIGHT - LEFT, BOTTOM - TOP], INK),
+        at("text", middle_x, BOTTOM + 52.0).with("text-anchor", "middle").around("wavelength / nm"),
+        name_of_y.around("share of incident light; emission relative to its peak"),
+    ]);
+    elements
 }
 
-fn legend(strokes: &[Stroke]) -> String {
-    let mut svg = String::new();
-    for (row, stroke) in (0_u8..).zip(strokes) {
-        let y = TOP + 12.0 + 24.0 * f64::from(row);
-        let _ = writeln!(
-            svg,
-            "<line x1=\"{SIDE}\" y1=\"{y}\" x2=\"{}\" y2=\"{y}\" stroke=\"{}\" stroke-width=\"2.4\" stroke-dasharray=\"{}\"/>\n\
-             <text x=\"{}\" y=\"{}\">{}</text>",
-            SIDE + 30.0,
-            stroke.color,
-            stroke.dashes,
-            SIDE + 40.0,
-            y + 5.0,
-            stroke.name
-        );
-    }
-    svg
+fn outlined(rect: Element, [width, height]: [f64; 2], color: &str) -> String {
+    rect.with("width", width)
+        .with("height", height)
+        .with("fill", "none")
+        .with("stroke", color)
+        .empty()
 }
 
 /// Target and result side by side, so that a difference shows at their common edge.
-fn swatches(figure: &Figure<'_>) -> String {
-    let top = TOP + 122.0;
-    let mut svg = String::new();
-    let pair = [("target", &figure.target, 0.0), ("material", &figure.result, SWATCH)];
-    for (name, Swatch { hex, .. }, offset) in pair {
-        let _ = writeln!(
-            svg,
-            "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{name}</text>\n\
-             <rect x=\"{}\" y=\"{top}\" width=\"{SWATCH}\" height=\"{SWATCH}\" fill=\"{hex}\" shape-rendering=\"crispEdges\"/>",
-            SIDE + offset + SWATCH / 2.0,
-            top - 9.0,
-            SIDE + offset
-        );
-    }
-    let _ = writeln!(
-        svg,
-        "<rect x=\"{SIDE}\" y=\"{top}\" width=\"{}\" height=\"{SWATCH}\" fill=\"none\" stroke=\"#999999\"/>",
-        2.0 * SWATCH
-    );
+fn swatches(figure: &Figure<'_>) -> Vec<String> {
+    let pair = [("target", &figure.target, SIDE), ("material", &figure.result, SIDE + SWATCH)];
+    let both = pair.into_iter().flat_map(|(name, Swatch { hex, .. }, left)| {
+        let title = at("text", left + SWATCH / 2.0, SWATCH_TOP - 9.0);
+        let area = at("rect", left, SWATCH_TOP).with("width", SWATCH).with("height", SWATCH);
+        [
+            title.with("text-anchor", "middle").around(name),
+            area.with("fill", hex).with("shape-rendering", "crispEdges").empty(),
+        ]
+    });
+    let frame = outlined(at("rect", SIDE, SWATCH_TOP), [2.0 * SWATCH, SWATCH], "#999999");
+    both.chain([frame]).collect()
+}
+
+/// Lines under the swatches.
+fn caption(figure: &Figure<'_>) -> Vec<String> {
     let clipped = figure.target.clipped || figure.result.clipped;
     let note = clipped.then(|| "outside sRGB, shown clipped".to_owned());
     let lines = figure.caption.iter().take(CAPTION_LINES).cloned().chain(note);
-    for (row, line) in (0_u8..).zip(lines) {
-        let y = top + SWATCH + 26.0 + CAPTION_STEP * f64::from(row);
-        let text = escaped(&shortened(&line));
-        let _ = writeln!(svg, "<text x=\"{SIDE}\" y=\"{y}\" font-size=\"12.5\">{text}</text>");
-    }
-    svg
+    let text = |(row, line): (u8, String)| {
+        let y = SWATCH_TOP + SWATCH + 26.0 + CAPTION_STEP * f64::from(row);
+        at("text", SIDE, y).with("font-size", 12.5).around(escape(&shortened(&line)))
+    };
+    (0..).zip(lines).map(text).collect()
 }
 
 fn shortened(line: &str) -> String {
@@ -191,12 +219,6 @@ fn shortened(line: &str) -> String {
         return line.to_owned();
     }
     line.chars().take(CAPTION_LETTERS - 1).chain(['…']).collect()
-}
-
-/// Text as XML holds it; control characters, which it cannot hold, are left out.
-fn escaped(text: &str) -> String {
-    let plain: String = text.chars().filter(|c| !c.is_control()).collect();
-    plain.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 #[cfg(test)]

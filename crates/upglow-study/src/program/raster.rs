@@ -1,4 +1,4 @@
-//! Pictures of pixels: PNG from colors, dots on a transparent ground, and text that SVG can hold.
+//! Pictures of pixels as PNG: from colors, dots on a transparent ground, drawings on white.
 
 use resvg::tiny_skia::{Color, FillRule, IntSize, Paint, PathBuilder, Pixmap, Transform};
 
@@ -52,35 +52,9 @@ pub(crate) fn rendered(svg: &str, scale: f32) -> Vec<u8> {
     encoded(&pixmap)
 }
 
-const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-
-/// Bytes as the text of a `data:` address.
-pub(crate) fn base64(bytes: &[u8]) -> String {
-    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for chunk in bytes.chunks(3) {
-        let word = (0..3).fold(0, |word, i| word << 8 | usize::from(*chunk.get(i).unwrap_or(&0)));
-        for digit in 0..4 {
-            let is_padding = digit > chunk.len();
-            let index = word >> (18 - 6 * digit) & 63;
-            text.push(if is_padding { '=' } else { char::from(DIGITS[index]) });
-        }
-    }
-    text
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// RFC 4648, section 10.
-    #[test]
-    fn base64_is_that_of_the_standard() {
-        let known =
-            [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foob", "Zm9vYg==")];
-        for (bytes, text) in known {
-            assert_eq!(base64(bytes.as_bytes()), text);
-        }
-    }
 
     #[test]
     fn pixels_come_back_from_their_png() {

@@ -4,16 +4,15 @@ mod frame;
 mod palette;
 mod text;
 
-use std::fmt::Write as _;
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD as BASE64;
+use upglow_svg::{Element, escape, hex, points};
 
 pub(crate) use frame::{Axis, Frame};
-pub(crate) use palette::{
-    ABSORPTION, EMISSION, INK, MUTED, STANDINGS, WEIGHTS, byte, error_color, hex,
-};
+pub(crate) use palette::{ABSORPTION, EMISSION, INK, MUTED, STANDINGS, WEIGHTS, error_color};
 pub(crate) use text::{Anchor, Text};
 
 use crate::fonts::FONT_STACK;
-use crate::raster::base64;
 
 /// Width of every figure: the text width of a journal's page.
 pub(crate) const PAGE_MM: f64 = 170.0;
@@ -34,6 +33,13 @@ impl Rect {
 
     pub(crate) fn center(self) -> [f64; 2] {
         [self.left + self.width / 2.0, self.top + self.height / 2.0]
+    }
+
+    /// An element that fills it.
+    fn place(self, name: &'static str) -> Element {
+        let Self { left, top, width, height } = self;
+        let sides = [("x", left), ("y", top), ("width", width), ("height", height)];
+        Element::new(name).with_all(sides.map(|(side, mm)| (side, number(mm))))
     }
 }
 
@@ -58,13 +64,13 @@ impl Stroke {
         Self { dashes, ..self }
     }
 
-    fn attributes(self) -> String {
-        let Self { color, width_mm, dashes } = self;
-        let dashes = match dashes {
-            "" => String::new(),
-            some => format!(" stroke-dasharray=\"{some}\""),
-        };
-        format!("fill=\"none\" stroke=\"{color}\" stroke-width=\"{}\"{dashes}", number(width_mm))
+    /// An element that is a line of this kind, with no area.
+    fn draw(self, element: Element) -> Element {
+        element
+            .with("fill", "none")
+            .with("stroke", self.color)
+            .with("stroke-width", number(self.width_mm))
+            .with_some("stroke-dasharray", Some(self.dashes).filter(|dashes| !dashes.is_empty()))
     }
 }
 
@@ -84,15 +90,27 @@ impl Drawing {
     /// The SVG file.
     pub(crate) fn finish(self, title: &str, description: &str) -> String {
         let (width, height) = (number(PAGE_MM), number(self.height_mm));
-        format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}mm\" height=\"{height}mm\" \
-             viewBox=\"0 0 {width} {height}\" font-family=\"{FONT_STACK}\" fill=\"{INK}\" \
-             stroke-linejoin=\"round\" role=\"img\">\n<title>{}</title>\n<desc>{}</desc>\n\
-             <rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n{}</svg>\n",
-            escape(title),
-            escape(description),
-            self.body
-        )
+        let content = [
+            String::new(),
+            Element::new("title").around(escape(title)),
+            Element::new("desc").around(escape(description)),
+            Element::new("rect")
+                .with("width", &width)
+                .with("height", &height)
+                .with("fill", "#ffffff")
+                .empty(),
+            self.body,
+        ];
+        let svg = Element::new("svg")
+            .with("xmlns", "http://www.w3.org/2000/svg")
+            .with("width", format_args!("{width}mm"))
+            .with("height", format_args!("{height}mm"))
+            .with("viewBox", format_args!("0 0 {width} {height}"))
+            .with("font-family", FONT_STACK)
+            .with("fill", INK)
+            .with("stroke-linejoin", "round")
+            .with("role", "img");
+        svg.around(content.join("\n")) + "\n"
     }
 
     pub(crate) fn line(&mut self, from: [f64; 2], to: [f64; 2], stroke: Stroke) {
@@ -100,8 +118,8 @@ impl Drawing {
     }
 
     pub(crate) fn polyline(&mut self, at: impl IntoIterator<Item = [f64; 2]>, stroke: Stroke) {
-        let points = points(at);
-        self.put(format_args!("<polyline points=\"{points}\" {}/>", stroke.attributes()));
+        let line = Element::new("polyline").with("points", points(at, number));
+        self.put(stroke.draw(line));
     }
 
     pub(crate) fn polygon(
@@ -110,30 +128,24 @@ impl Drawing {
         fill: &str,
         opacity: f64,
     ) {
-        let (points, opacity) = (points(at), number(opacity));
-        self.put(format_args!(
-            "<polygon points=\"{points}\" fill=\"{fill}\" fill-opacity=\"{opacity}\"/>"
-        ));
+        let area = Element::new("polygon").with("points", points(at, number));
+        self.put(area.with("fill", fill).with("fill-opacity", number(opacity)));
     }
 
     pub(crate) fn fill(&mut self, rect: Rect, fill: &str) {
-        let [x, y, w, h] = [rect.left, rect.top, rect.width, rect.height].map(number);
-        self.put(format_args!(
-            "<rect x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" fill=\"{fill}\"/>"
-        ));
+        self.put(rect.place("rect").with("fill", fill));
     }
 
     pub(crate) fn outline(&mut self, rect: Rect, stroke: Stroke) {
-        let [x, y, w, h] = [rect.left, rect.top, rect.width, rect.height].map(number);
-        let stroke = stroke.attributes();
-        self.put(format_args!("<rect x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" {stroke}/>"));
+        self.put(stroke.draw(rect.place("rect")));
     }
 
     pub(crate) fn dot(&mut self, at: [f64; 2], radius_mm: f64, fill: &str, stroke: Stroke) {
-        let ([x, y], r) = (at.map(number), number(radius_mm));
-        self.put(format_args!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{r}\" fill=\"{fill}\"/>"));
-        let stroke = stroke.attributes();
-        self.put(format_args!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{r}\" {stroke}/>"));
+        let [x, y] = at;
+        let sides = [("cx", x), ("cy", y), ("r", radius_mm)];
+        let circle = Element::new("circle").with_all(sides.map(|(side, mm)| (side, number(mm))));
+        self.put(circle.clone().with("fill", fill));
+        self.put(stroke.draw(circle));
     }
 
     /// A line with a filled head at either end.
@@ -161,50 +173,58 @@ impl Drawing {
         let [columns, rows] = size;
         let [x, y] = [rect.left, rect.top].map(number);
         let [u, v] = [rect.width / columns as f64, rect.height / rows as f64].map(number_fine);
-        self.put(format_args!("<g transform=\"translate({x} {y}) scale({u} {v})\">"));
+        let mut cells = String::new();
         for (row, line) in colors.chunks(columns).enumerate() {
             for (start, length) in runs(line) {
                 let last = start + length == columns;
-                let width = length as f64 + if last { 0.0 } else { OVERLAP };
-                let height = 1.0 + if row + 1 == rows { 0.0 } else { OVERLAP };
-                let (width, height, fill) = (number(width), number(height), hex(line[start]));
-                self.put(format_args!(
-                    "<path d=\"M{start} {row}h{width}v{height}h-{width}z\" fill=\"{fill}\"/>"
-                ));
+                let width = number(length as f64 + if last { 0.0 } else { OVERLAP });
+                let height = number(1.0 + if row + 1 == rows { 0.0 } else { OVERLAP });
+                let outline = format!("M{start} {row}h{width}v{height}h-{width}z");
+                let cell = Element::new("path").with("d", outline).with("fill", hex(line[start]));
+                cells = cells + "\n" + &cell.empty();
             }
         }
-        self.put(format_args!("</g>"));
+        let place = format!("translate({x} {y}) scale({u} {v})");
+        self.put_around(Element::new("g").with("transform", place), &(cells + "\n"));
     }
 
     /// A PNG picture stretched over `rect`, its pixels sharp.
     pub(crate) fn pixels(&mut self, rect: Rect, png: &[u8]) {
-        let [x, y, w, h] = [rect.left, rect.top, rect.width, rect.height].map(number);
-        let data = base64(png);
-        self.put(format_args!(
-            "<image x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" preserveAspectRatio=\"none\" \
-             style=\"image-rendering:pixelated\" href=\"data:image/png;base64,{data}\"/>"
-        ));
+        let data = BASE64.encode(png);
+        let picture = rect
+            .place("image")
+            .with("preserveAspectRatio", "none")
+            .with("style", "image-rendering:pixelated")
+            .with("href", format_args!("data:image/png;base64,{data}"));
+        self.put(picture);
     }
 
     /// What `draw` draws, cut off at the edges of `rect`.
     pub(crate) fn clipped(&mut self, rect: Rect, draw: impl FnOnce(&mut Self)) {
-        let id = self.clips;
+        let id = format!("clip{}", self.clips);
         self.clips += 1;
-        let [x, y, w, h] = [rect.left, rect.top, rect.width, rect.height].map(number);
-        self.put(format_args!(
-            "<clipPath id=\"clip{id}\"><rect x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\"/>\
-             </clipPath>\n<g clip-path=\"url(#clip{id})\">"
-        ));
+        let clip = Element::new("clipPath").with("id", &id);
+        self.put_around(clip, &rect.place("rect").empty());
+        let outside = std::mem::take(&mut self.body);
         draw(self);
-        self.put(format_args!("</g>"));
+        let inside = std::mem::replace(&mut self.body, outside);
+        let group = Element::new("g").with("clip-path", format_args!("url(#{id})"));
+        self.put_around(group, &format!("\n{inside}"));
     }
 
     pub(crate) fn text(&mut self, text: &Text<'_>) {
-        self.put(format_args!("{}", text.to_svg()));
+        self.body += &text.to_svg();
+        self.body.push('\n');
     }
 
-    fn put(&mut self, element: std::fmt::Arguments<'_>) {
-        writeln!(self.body, "{element}").expect("a string takes any text");
+    fn put(&mut self, element: Element) {
+        self.body += &element.empty();
+        self.body.push('\n');
+    }
+
+    fn put_around(&mut self, element: Element, content: &str) {
+        self.body += &element.around(content);
+        self.body.push('\n');
     }
 }
 
@@ -220,11 +240,6 @@ fn runs(line: &[[u8; 3]]) -> Vec<(usize, usize)> {
         .collect()
 }
 
-fn points(at: impl IntoIterator<Item = [f64; 2]>) -> String {
-    let point = |[x, y]: [f64; 2]| format!("{},{}", number(x), number(y));
-    at.into_iter().map(point).collect::<Vec<_>>().join(" ")
-}
-
 /// A length to a hundredth of a millimeter, the same text everywhere.
 pub(crate) fn number(value: f64) -> String {
     trimmed(format!("{value:.2}"))
@@ -238,11 +253,6 @@ fn number_fine(value: f64) -> String {
 fn trimmed(text: String) -> String {
     let short = text.trim_end_matches('0').trim_end_matches('.');
     if short == "-0" { "0".into() } else { short.into() }
-}
-
-/// Text as XML holds it.
-pub(crate) fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 #[cfg(test)]

@@ -1,8 +1,7 @@
 //! From colors of the cube to colors of the page.
 
 use upglow_color::{Colorimetry, Contract, LinearRgb, Matrix3, RgbSpace, choices, srgb_encoded};
-
-use crate::svg::byte;
+use upglow_svg::byte;
 
 /// How RGB of the cube's space is shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

@@ -1,13 +1,14 @@
 //! Figure 10: what any material can show.
 
 use upglow_color::{Contract, StandingKind};
+use upglow_study::{shares, standing_layer};
+use upglow_svg::hex;
 
 use super::sheet::{Sheet, swatch};
 use super::{Figure, Studio, percent};
 use crate::error::StudyError;
 use crate::raster;
-use crate::svg::{Axis, Drawing, Frame, Rect, STANDINGS, Text, hex};
-use upglow_study::{shares, standing_layer};
+use crate::svg::{Axis, Drawing, Frame, Rect, STANDINGS, Text};
 
 /// The layers shown, in 31sts, and what is written above them.
 const BLUES: [(f64, &str); 5] =

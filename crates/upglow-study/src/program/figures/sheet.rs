@@ -1,9 +1,11 @@
 //! Panels of equal size in rows and columns, and layers of a cube in them.
 
+use upglow_svg::hex;
+
 use crate::figures::cut::Cut;
 use crate::figures::display::Painter;
 use crate::raster;
-use crate::svg::{Axis, Drawing, Frame, PAGE_MM, Rect, hex};
+use crate::svg::{Axis, Drawing, Frame, PAGE_MM, Rect, Stroke};
 
 /// Where the panels of a page lie: as large as the page's width allows.
 #[derive(Clone, Copy, Debug)]
@@ -143,5 +145,5 @@ pub(crate) fn errors_text(cut: &Cut<'_>) -> String {
 /// A color of the page as SVG writes it.
 pub(crate) fn swatch(drawing: &mut Drawing, rect: Rect, color: [u8; 3]) {
     drawing.fill(rect, &hex(color));
-    drawing.outline(rect, crate::svg::Stroke::AXIS);
+    drawing.outline(rect, Stroke::AXIS);
 }

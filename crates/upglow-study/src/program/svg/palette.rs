@@ -3,6 +3,8 @@
 //! Lines are from the set of Okabe and Ito; the ramps get darker from end to end, so that they
 //! read in gray as well.
 
+use upglow_svg::byte;
+
 /// Text and axes.
 pub(crate) const INK: &str = "#1f2328";
 /// Second lines of titles.
@@ -38,21 +40,6 @@ pub(crate) fn error_color(share: f64) -> [u8; 3] {
     let fraction = position - (above - 1) as f64;
     let [low, high] = [ERRORS[above - 1], ERRORS[above]];
     [0, 1, 2].map(|k| byte(f64::from(low[k]) * (1.0 - fraction) + f64::from(high[k]) * fraction))
-}
-
-/// The nearest whole number in 0..=255.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "clamped before; rounding is what it is for"
-)]
-pub(crate) fn byte(value: f64) -> u8 {
-    value.clamp(0.0, 255.0).round() as u8
-}
-
-/// A color as SVG writes it.
-pub(crate) fn hex([r, g, b]: [u8; 3]) -> String {
-    format!("#{r:02x}{g:02x}{b:02x}")
 }
 
 #[cfg(test)]

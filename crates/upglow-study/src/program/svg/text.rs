@@ -1,6 +1,8 @@
 //! Lines of text.
 
-use super::{INK, escape, number};
+use upglow_svg::{Element, escape};
+
+use super::{INK, number};
 
 /// Size of labels, mm: 7.1 points.
 const LABEL_MM: f64 = 2.5;
@@ -9,7 +11,8 @@ const NOTE_MM: f64 = 2.2;
 /// A subscript's size and depth, as shares of the text around it.
 const SUBSCRIPT: [f64; 2] = [0.7, 0.22];
 
-const HALO: &str = " paint-order=\"stroke\" stroke=\"#ffffff\" stroke-width=\"0.7\"";
+const HALO: [(&str, &str); 3] =
+    [("paint-order", "stroke"), ("stroke", "#ffffff"), ("stroke-width", "0.7")];
 
 /// The end of the line that the given point is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -76,23 +79,24 @@ impl<'t> Text<'t> {
 
     pub(crate) fn to_svg(self) -> String {
         let [x, y] = self.at.map(number);
-        let place = if self.upright {
-            format!("transform=\"translate({x} {y}) rotate(-90)\"")
+        let line = Element::new("text");
+        let placed = if self.upright {
+            line.with("transform", format_args!("translate({x} {y}) rotate(-90)"))
         } else {
-            format!("x=\"{x}\" y=\"{y}\"")
+            line.with("x", x).with("y", y)
         };
         let anchor = match self.anchor {
-            Anchor::Start => "",
-            Anchor::Middle => " text-anchor=\"middle\"",
-            Anchor::End => " text-anchor=\"end\"",
+            Anchor::Start => None,
+            Anchor::Middle => Some("middle"),
+            Anchor::End => Some("end"),
         };
-        let color =
-            if self.color == INK { String::new() } else { format!(" fill=\"{}\"", self.color) };
-        let weight = if self.bold { " font-weight=\"bold\"" } else { "" };
-        let halo = if self.halo { HALO } else { "" };
-        let size = number(self.size_mm);
-        let spans = spans(self.text, self.size_mm);
-        format!("<text {place} font-size=\"{size}\"{anchor}{color}{weight}{halo}>{spans}</text>")
+        placed
+            .with("font-size", number(self.size_mm))
+            .with_some("text-anchor", anchor)
+            .with_some("fill", (self.color != INK).then_some(self.color))
+            .with_some("font-weight", self.bold.then_some("bold"))
+            .with_all(HALO.into_iter().filter(|_| self.halo))
+            .around(spans(self.text, self.size_mm))
     }
 }
 
@@ -100,9 +104,10 @@ impl<'t> Text<'t> {
 fn spans(text: &str, size_mm: f64) -> String {
     let [share, depth] = SUBSCRIPT;
     let (small, drop) = (number(share * size_mm), number(depth * size_mm));
+    let span = || Element::new("tspan");
     let mut svg = String::new();
     let mut rest = text;
-    let mut lift = String::new();
+    let mut lift: Option<String> = None;
     while let Some(c) = rest.chars().next() {
         let marked = [("*", "*"), ("_{", "}"), ("[", "]")].into_iter().find_map(|(open, close)| {
             let (inner, after) = rest.strip_prefix(open)?.split_once(close)?;
@@ -114,21 +119,25 @@ fn spans(text: &str, size_mm: f64) -> String {
                     .find(['*', '_', '['])
                     .map_or(rest.len(), |end| end + c.len_utf8()),
             );
-            svg += &if lift.is_empty() {
-                escape(plain)
-            } else {
-                format!("<tspan{lift}>{}</tspan>", escape(plain))
+            svg += &match lift.take() {
+                None => escape(plain),
+                lift => span().with_some("dy", lift).around(escape(plain)),
             };
-            lift.clear();
             rest = after;
             continue;
         };
+        let lifted = lift.take();
         svg += &match mark {
-            "*" => format!("<tspan font-style=\"italic\"{lift}>{inner}</tspan>"),
-            "[" => format!("<tspan font-weight=\"bold\"{lift}>({inner})</tspan>"),
-            _ => format!("<tspan font-size=\"{small}\" dy=\"{drop}\">{inner}</tspan>"),
+            "*" => span().with("font-style", "italic").with_some("dy", lifted).around(inner),
+            "[" => {
+                let letter = format!("({inner})");
+                span().with("font-weight", "bold").with_some("dy", lifted).around(letter)
+            }
+            _ => {
+                lift = Some(format!("-{drop}"));
+                span().with("font-size", &small).with("dy", &drop).around(inner)
+            }
         };
-        lift = if mark == "_{" { format!(" dy=\"-{drop}\"") } else { String::new() };
         rest = after;
     }
     svg
