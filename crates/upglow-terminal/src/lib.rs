@@ -17,7 +17,7 @@ use clap::Parser;
 pub use failure::Failure;
 pub use output::{Console, Report, size};
 pub use progress::{Bar, Threads, check_stopped};
-pub use values::{Word, count, in_range, number, parsed, word};
+pub use values::{count, in_range, number, parsed, word};
 
 /// Reads the command line, does what it asks for, and gives the status to exit with.
 ///

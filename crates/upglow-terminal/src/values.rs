@@ -11,11 +11,11 @@ use upglow_color::Choice;
 
 /// Reads a word of a [`Choice`]; the help lists the words.
 #[derive(Clone, Copy, Debug)]
-pub struct Word<T>(PhantomData<T>);
+struct Word<T>(PhantomData<T>);
 
 /// A parser of the words of an option.
 #[must_use]
-pub fn word<T: Choice>() -> Word<T> {
+pub fn word<T: Choice + Send + Sync>() -> impl TypedValueParser<Value = T> {
     Word(PhantomData)
 }
 

@@ -15,14 +15,15 @@ mod raster;
 mod report;
 mod spread;
 mod svg;
-#[cfg(test)]
-mod tests {
-    mod claims;
-    mod figures;
-}
 
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
     upglow_terminal::run(commands::run)
+}
+
+#[cfg(test)]
+mod tests {
+    mod claims;
+    mod figures;
 }

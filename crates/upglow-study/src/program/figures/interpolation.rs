@@ -45,7 +45,7 @@ pub(super) fn figure_8(studio: &Studio<'_>) -> Result<Figure, StudyError> {
         .collect();
     let parts: Vec<String> = lettered()
         .map(|((letter, (_, name)), layer)| {
-            format!("({letter}) {name}: {}", errors_text(&Cut::whole(&layer)))
+            format!("({letter}) {name}: {}", errors_text(&Cut::whole(layer)))
         })
         .collect();
     let caption = format!(
