@@ -224,7 +224,7 @@ fn export_holds_every_number_of_the_cube() {
         let report = folder.json("export cube nodes.csv");
         let text = String::from_utf8(folder.read("nodes.csv")).unwrap();
         assert_eq!(report["bytes"], text.len());
-        let cube = Cube::read(&folder.path().join("cube")).unwrap();
+        let cube = Cube::read(folder.path().join("cube")).unwrap();
         let mut lines = text.lines();
         assert_eq!(
             lines.next(),

@@ -548,7 +548,7 @@ fn a_texel_is_the_same_wherever_the_picture_is_cut() {
     for form in forms() {
         let samples = |rgb: &[[f32; 3]]| {
             let mut reader =
-                ExrReader::open(&desk.baked(form.clone(), Sample::Half, 7, rgb)).unwrap();
+                ExrReader::open(desk.baked(form.clone(), Sample::Half, 7, rgb)).unwrap();
             let channels: Vec<usize> = (0..reader.channel_names().len()).collect();
             reader.read_rows(0..rgb.len() / 7, &channels).unwrap()
         };

@@ -208,7 +208,7 @@ impl Lobe<'_> {
 }
 
 /// One of two dyes in proportion to `areas`, and what is left of `u` to draw from it.
-fn pick<'m>([first, second]: [&'m DyeCurves; 2], areas: [f64; 2], u: f64) -> (&'m DyeCurves, f64) {
+fn pick([first, second]: [&DyeCurves; 2], areas: [f64; 2], u: f64) -> (&DyeCurves, f64) {
     let target = u * (areas[0] + areas[1]);
     if target < areas[0] || areas[1] <= 0.0 {
         (first, ratio(target, areas[0]))
