@@ -211,13 +211,8 @@ impl CompactLayout {
                 lobe.shares.iter().map(|&(dye, share)| share * of(&self.dyes[dye])).sum()
             };
             let absorbed = lobe.strength * mean(&|dye| dye.absorption[incident]);
-            let returned = match self.accounting {
-                Accounting::Energy => 1.0,
-                Accounting::Photon => {
-                    let mean_nm = mean(&|dye| dye.mean_emission_nm);
-                    (self.wavelengths_nm[incident] / mean_nm).min(1.0)
-                }
-            };
+            let mean_emission_nm = mean(&|dye| dye.mean_emission_nm);
+            let returned = self.accounting.share(self.wavelengths_nm[incident], mean_emission_nm);
             let quantum_yield = mean(&|dye| dye.quantum_yield);
             sum += absorbed * quantum_yield * returned * mean(&|dye| dye.emission[outgoing]);
         });
