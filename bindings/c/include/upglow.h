@@ -153,7 +153,7 @@ const char *upglow_status_name(int32_t status);
 // evaluations need is allocated here.
 //
 // Fails with `UPGLOW_STATUS_FILE` if the file cannot be read, and with `UPGLOW_STATUS_NOT_A_CUBE`
-// if it is not whole, not a cube or of another version.
+// if it is not whole, not a cube or of another version. The message names the file.
 //
 // Pointers are null or point to what is described above.
 UpglowStatus upglow_cube_open(const char *path, UpglowCube **cube);

@@ -108,7 +108,7 @@ fn c_text(text: &str) -> CString {
 /// evaluations need is allocated here.
 ///
 /// Fails with `UPGLOW_STATUS_FILE` if the file cannot be read, and with `UPGLOW_STATUS_NOT_A_CUBE`
-/// if it is not whole, not a cube or of another version.
+/// if it is not whole, not a cube or of another version. The message names the file.
 ///
 /// # Safety
 ///

@@ -105,7 +105,7 @@ static void damaged_files(const char *path) {
     const UpglowStatus refused = UPGLOW_STATUS_NOT_A_CUBE;
 
     REFUSED(upglow_cube_open("/nowhere/at/all", &cube), UPGLOW_STATUS_FILE);
-    HOLDS(strlen(upglow_message()) > 0);
+    HOLDS(strstr(upglow_message(), "/nowhere/at/all: ") == upglow_message());
     REFUSED(upglow_cube_open("/", &cube), UPGLOW_STATUS_FILE);
     REFUSED(upglow_cube_from_memory(NULL, 0, &cube), refused);
     REFUSED(upglow_cube_from_memory((const uint8_t *)"SPEC\0\0\0\0", 8, &cube), refused);

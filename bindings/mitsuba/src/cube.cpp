@@ -6,8 +6,7 @@
 namespace upglow_mitsuba {
 
 Cube::Cube(const std::string &path) : m_path(path) {
-    if (upglow_cube_open(path.c_str(), &m_cube) != UPGLOW_STATUS_OK)
-        throw std::runtime_error("upglow: " + path + ": " + upglow_message());
+    expect_ok(upglow_cube_open(path.c_str(), &m_cube));
     expect_ok(upglow_cube_facts(m_cube, &m_facts));
 }
 

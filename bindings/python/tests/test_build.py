@@ -105,6 +105,15 @@ def test_nodes_are_what_fit_finds_for_gray(cube: upglow.Cube) -> None:
     assert np.array_equal(gray.reflectance, node.reflectance)
 
 
+def test_former_words_are_still_read() -> None:
+    def content(**options) -> bytes:
+        return upglow.build(resolution=2, **options).to_bytes()
+
+    assert content(model=upglow.Dyes(set="seed8")) == content(model=upglow.Dyes(set="konig8"))
+    for former, word in [("seed", "konig2020"), ("seed-features", "konig2020-features")]:
+        assert content(method=former) == content(method=word)
+
+
 def test_unmeasured_yields_are_a_warning() -> None:
     with pytest.warns(UserWarning, match="no published quantum yield, taken as 1: "):
         upglow.build(model=upglow.Dyes(quantum_yield="measured"), resolution=2)

@@ -153,7 +153,7 @@ def layer(
     side
         Colors along red and along green, 2 to 2048; by default the nodes themselves.
     interpolation
-        What is done between nodes: ``blend`` (ours), or the seed paper's ``none``,
+        What is done between nodes: ``blend`` (ours), or König et al.'s ``none``,
         ``coefficients``, ``features`` and ``hybrid``. Nodes alone do not need any.
 
     Raises
@@ -199,7 +199,7 @@ def dyes(source: Dyes | Cube | None = None, *, observer: Any = None) -> DyeSpect
     Parameters
     ----------
     source
-        `Dyes`, by default the seed paper's eight, or a `Cube` with dyes.
+        `Dyes`, by default ``konig8``, or a `Cube` with dyes.
     observer
         The eye: an `Observer`, or what one is made from; by default the cube's, or CIE 1931 2°.
 

@@ -64,7 +64,7 @@ def cube_named(source: Any) -> Cube:
     except OSError as error:
         raise ValueError(f"cube {source}: {error.strerror or error}") from None
     except ValueError as error:
-        raise ValueError(f"cube {source}: {error}") from None
+        raise ValueError(f"cube {error}") from None
 
 
 def on_device(cube: Cube) -> DeviceCube:
