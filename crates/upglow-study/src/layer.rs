@@ -105,7 +105,7 @@ mod tests {
     use upglow_fit::{FitOptions, Unwatched, build_cube};
 
     fn cube() -> Cube {
-        let dyes = DyeModel::new(DyeSet::named("seed8").unwrap(), DyeOptions::default()).unwrap();
+        let dyes = DyeModel::new(DyeSet::named("konig8").unwrap(), DyeOptions::default()).unwrap();
         let (contract, model) = (Contract::default(), Model::Dyes(dyes));
         build_cube(&contract, &model, FitOptions::default(), 4, &Unwatched).unwrap()
     }

@@ -17,5 +17,5 @@ pub use dye_spectra::{DyeSpectra, dye_spectra};
 pub use layer::Layer;
 pub use mixing::Mixing;
 pub use node_colors::node_colors;
-pub use reachability::{shares, standing_layer};
+pub use reachability::standing_layer;
 pub use solid_surface::solid_surface;

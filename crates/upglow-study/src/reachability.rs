@@ -18,14 +18,6 @@ pub fn standing_layer(contract: &Contract, blue: f64, side: usize) -> Vec<Standi
         .collect()
 }
 
-/// Shares of each kind, in their order.
-pub fn shares<'k>(kinds: impl IntoIterator<Item = &'k StandingKind>) -> [f64; 3] {
-    let mut counts = [0.0; 3];
-    kinds.into_iter().for_each(|&kind| counts[kind as usize] += 1.0);
-    let all: f64 = counts.iter().sum();
-    counts.map(|count| count / all)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -39,6 +31,5 @@ mod tests {
         assert_eq!((layer[0], layer[2]), (Reflectance, Unreachable));
         let browns = standing_layer(&Contract::default(), 0.1, 21);
         assert_eq!(browns[4 * 21 + 7], Reflectance);
-        assert_eq!(shares(&[Unreachable, Reflectance]), [0.5, 0.0, 0.5]);
     }
 }

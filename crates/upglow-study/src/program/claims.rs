@@ -1,4 +1,4 @@
-//! The seed paper's claims as values: its sentence, what was measured, whether it holds, and why.
+//! The claims of König et al. 2020 as values: the paper's sentence, what was measured, whether it holds, and why.
 
 mod between;
 mod dyes;
@@ -144,14 +144,14 @@ pub(crate) struct Fields {
 impl Fields {
     pub(crate) fn of(cubes: &Cubes, watch: &dyn Watch) -> Result<Self, StudyError> {
         let field = |which| cubes.get(which, watch).map(Field::of);
-        let seed = |metric, sweeps| StudyCube::Seed { metric, sweeps };
+        let paper = |metric, sweeps| StudyCube::Paper { metric, sweeps };
         Ok(Self {
-            rgb: field(seed(Metric::Rgb, PAPER_SWEEPS))?,
-            de76: field(seed(Metric::De76, PAPER_SWEEPS))?,
-            de76_8: field(seed(Metric::De76, 2 * PAPER_SWEEPS))?,
+            rgb: field(paper(Metric::Rgb, PAPER_SWEEPS))?,
+            de76: field(paper(Metric::De76, PAPER_SWEEPS))?,
+            de76_8: field(paper(Metric::De76, 2 * PAPER_SWEEPS))?,
             de2000: field(StudyCube::PAPER)?,
-            features: field(StudyCube::SeedFeatures)?,
-            analytic: field(StudyCube::SeedAnalytic { sweeps: PAPER_SWEEPS })?,
+            features: field(StudyCube::PaperFeatures)?,
+            analytic: field(StudyCube::PaperAnalytic { sweeps: PAPER_SWEEPS })?,
             reference: field(StudyCube::Reference)?,
             reference_de76: field(StudyCube::Search { metric: Metric::De76 })?,
         })

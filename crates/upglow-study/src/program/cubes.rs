@@ -20,16 +20,16 @@ pub(crate) enum StudyCube {
         metric: Metric,
     },
     /// The paper's way: eight dyes, moving coefficients.
-    Seed {
+    Paper {
         /// The color difference that is minimized.
         metric: Metric,
         /// How often nodes try their neighbors' materials; the paper calls it iterations.
         sweeps: u32,
     },
     /// The paper's way, moving shift, width and slope: CIEDE2000, four sweeps.
-    SeedFeatures,
+    PaperFeatures,
     /// The paper's way with fluorescence by formula: CIEDE2000, moving coefficients.
-    SeedAnalytic {
+    PaperAnalytic {
         /// How often nodes try their neighbors' materials.
         sweeps: u32,
     },
@@ -40,7 +40,7 @@ pub(crate) const PAPER_SWEEPS: u32 = 4;
 
 impl StudyCube {
     /// The paper's way with dyes, CIEDE2000 and four sweeps, as in its figures 1, 3 and 7.
-    pub(crate) const PAPER: Self = Self::Seed { metric: Metric::De2000, sweeps: PAPER_SWEEPS };
+    pub(crate) const PAPER: Self = Self::Paper { metric: Metric::De2000, sweeps: PAPER_SWEEPS };
 
     /// What fluoresces in it.
     ///
@@ -49,8 +49,8 @@ impl StudyCube {
     /// [`StudyError`] never, as long as the built-in set of dyes is complete.
     pub(crate) fn model(self) -> Result<Model, StudyError> {
         match self {
-            Self::SeedAnalytic { .. } => Ok(Model::Analytic(AnalyticModel::default())),
-            Self::Reference | Self::Search { .. } | Self::Seed { .. } | Self::SeedFeatures => {
+            Self::PaperAnalytic { .. } => Ok(Model::Analytic(AnalyticModel::default())),
+            Self::Reference | Self::Search { .. } | Self::Paper { .. } | Self::PaperFeatures => {
                 let dyes = DyeSet::named("konig8")?;
                 Ok(Model::Dyes(DyeModel::new(dyes, DyeOptions::default())?))
             }
@@ -64,11 +64,11 @@ impl StudyCube {
         match self {
             Self::Reference => FitOptions::default(),
             Self::Search { metric } => FitOptions { metric, ..FitOptions::default() },
-            Self::Seed { metric, sweeps } => konig2020(metric, sweeps, Method::Konig2020),
-            Self::SeedFeatures => {
+            Self::Paper { metric, sweeps } => konig2020(metric, sweeps, Method::Konig2020),
+            Self::PaperFeatures => {
                 konig2020(Metric::De2000, PAPER_SWEEPS, Method::Konig2020Features)
             }
-            Self::SeedAnalytic { sweeps } => konig2020(Metric::De2000, sweeps, Method::Konig2020),
+            Self::PaperAnalytic { sweeps } => konig2020(Metric::De2000, sweeps, Method::Konig2020),
         }
     }
 }
@@ -124,7 +124,7 @@ mod tests {
     #[test]
     fn a_cube_is_built_once_and_is_the_same_from_a_fresh_start() {
         let (cubes, others) = (Cubes::new(4), Cubes::new(4));
-        for which in [StudyCube::Reference, StudyCube::PAPER, StudyCube::SeedFeatures] {
+        for which in [StudyCube::Reference, StudyCube::PAPER, StudyCube::PaperFeatures] {
             let first = cubes.get(which, &Unwatched).unwrap();
             assert!(Arc::ptr_eq(&first, &cubes.get(which, &Unwatched).unwrap()));
             assert_eq!(first, others.get(which, &Unwatched).unwrap());

@@ -36,7 +36,7 @@ struct Row {
 
 pub(super) fn figure_1(studio: &Studio<'_>) -> Result<Figure, StudyError> {
     let get = |which| studio.cubes.get(which, studio.watch);
-    let analytic = get(StudyCube::SeedAnalytic { sweeps: SWEEPS })?;
+    let analytic = get(StudyCube::PaperAnalytic { sweeps: SWEEPS })?;
     let rows = [
         Row { model: "analytic", letters: ["a", "c", "e"], cube: analytic },
         Row { model: "eight dyes", letters: ["b", "d", "f"], cube: get(StudyCube::PAPER)? },

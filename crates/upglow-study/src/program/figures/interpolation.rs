@@ -31,7 +31,7 @@ const LETTERS: [&str; 10] = ["a", "b", "c", "d", "e", "f", "g", "h", "i", "j"];
 
 fn layer(studio: &Studio<'_>, interpolation: Interpolation) -> Result<Layer, StudyError> {
     studio.go_on()?;
-    let cube = studio.cubes.get(StudyCube::SeedFeatures, studio.watch)?;
+    let cube = studio.cubes.get(StudyCube::PaperFeatures, studio.watch)?;
     let side = POINTS_PER_NODE * cube.resolution();
     Ok(Layer::between_nodes(&cube, BLUE, side, interpolation))
 }

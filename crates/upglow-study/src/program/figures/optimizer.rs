@@ -40,7 +40,7 @@ impl Variant {
     /// The layer of nodes nearest to `blue`.
     fn layer(self, studio: &Studio<'_>, blue: f64) -> Result<Layer, StudyError> {
         let Self { metric, sweeps } = self;
-        let cube = studio.cubes.get(StudyCube::Seed { metric, sweeps }, studio.watch)?;
+        let cube = studio.cubes.get(StudyCube::Paper { metric, sweeps }, studio.watch)?;
         Ok(Layer::of_nodes(&cube, Layer::nearest_node(cube.resolution(), blue)))
     }
 }

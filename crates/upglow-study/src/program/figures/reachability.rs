@@ -1,7 +1,7 @@
 //! Figure 10: what any material can show.
 
 use upglow_color::{Contract, StandingKind};
-use upglow_study::{shares, standing_layer};
+use upglow_study::standing_layer;
 use upglow_svg::hex;
 
 use super::sheet::{Sheet, swatch};
@@ -105,5 +105,24 @@ fn draw_legend(drawing: &mut Drawing, sheet: &Sheet, all: &[String; 3]) {
         let rect = Rect { left, top: baseline - 2.4, width: 5.0, height: 3.0 };
         swatch(drawing, rect, STANDINGS[i]);
         drawing.text(&Text::label([left + 6.6, baseline], &format!("{name}, {share}")));
+    }
+}
+
+/// Shares of each kind, in their order.
+fn shares<'k>(kinds: impl IntoIterator<Item = &'k StandingKind>) -> [f64; 3] {
+    let mut counts = [0.0; 3];
+    kinds.into_iter().for_each(|&kind| counts[kind as usize] += 1.0);
+    let all: f64 = counts.iter().sum();
+    counts.map(|count| count / all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_add_up_to_one() {
+        let kinds = [StandingKind::Unreachable, StandingKind::Reflectance];
+        assert_eq!(shares(&kinds), [0.5, 0.0, 0.5]);
     }
 }
