@@ -19,24 +19,8 @@ const TIME_KEY: &str = "\"time_s\":";
 /// Exit status of a program that refuses its options.
 const BAD_USAGE: i32 = 2;
 
-/// Options of cubes that stand for the others where every command is run.
-const SAMPLES: [(&str, &str); 9] = [
-    ("default", ""),
-    ("separate", "--mixing separate"),
-    ("photon", "--mixing separate --accounting photon --quantum-yield measured"),
-    ("dense", "--dyes wide14 --optical-density 1 --quantum-yield 0.8"),
-    ("analytic", "--model analytic"),
-    ("analytic-photon", "--model analytic --accounting photon"),
-    ("reflectance", "--model reflectance"),
-    ("features", "--method seed-features --slope-max-per-nm none"),
-    ("srgb", "--space srgb --illuminant D50"),
-];
-
-/// Colors to look up: gray, black, white, primaries, what needs dyes, what nothing shows.
-const COLORS: [&str; 7] =
-    ["0.5 0.5 0.5", "0 0 0", "1 1 1", "0.9 0.1 0.1", "0.1 0.8 0.2", "0.2 0.1 0.9", "0.9 0 0.9"];
-
-const INTERPOLATIONS: [&str; 5] = ["blend", "none", "coefficients", "features", "hybrid"];
+/// What is run, and how what it prints is kept.
+const SCRIPT: &str = include_str!("../outputs.txt");
 
 /// Makes the outputs of `program` in `folder`, prints their sums, and compares them with those in
 /// `against`; whether no product differs. Figures and the report on the paper come from `study`.
@@ -109,12 +93,6 @@ fn sums(folder: &Path) -> Result<BTreeMap<String, String>, StepError> {
     Ok(sums)
 }
 
-/// A folder that programs write into. Their paths are below it, so that no output names it.
-struct Outputs<'a> {
-    program: &'a Path,
-    folder: &'a Path,
-}
-
 fn make(program: &Path, folder: &Path, study: &Path) -> Result<(), StepError> {
     // Programs are run in another folder than the one their paths were typed in.
     let [program, study] =
@@ -122,11 +100,79 @@ fn make(program: &Path, folder: &Path, study: &Path) -> Result<(), StepError> {
     fs::create_dir(folder).map_err(StepError::file(folder))?;
     let outputs = Outputs { program: &program, folder };
     outputs.write_inputs()?;
-    outputs.build_cubes()?;
-    outputs.show_cubes()?;
-    outputs.export_cubes()?;
-    outputs.bake_pictures()?;
-    Outputs { program: &study, folder }.draw_study()
+    for Run { kind, name, args } in runs(SCRIPT) {
+        match kind.as_str() {
+            "study" => Outputs { program: &study, folder }.json(&name, &args)?,
+            _ => outputs.json(&name, &args)?,
+        }
+        if kind == "both" {
+            outputs.write(&format!("{TEXTS}/{name}.txt"), &outputs.output(&args)?)?;
+        }
+    }
+    Ok(())
+}
+
+/// One run of a program.
+#[derive(Clone, Debug, PartialEq)]
+struct Run {
+    /// How what it prints is kept, as `outputs.txt` says it.
+    kind: String,
+    /// Under which name.
+    name: String,
+    args: String,
+}
+
+/// The choices of one name: the word of each, and its options.
+type Choices<'a> = Vec<(String, &'a str)>;
+
+/// Every run of a script, in order.
+fn runs(script: &str) -> Vec<Run> {
+    let mut choices: BTreeMap<&str, Choices<'_>> = BTreeMap::new();
+    let mut runs = Vec::new();
+    for line in script.lines().filter(|line| !line.is_empty() && !line.starts_with('#')) {
+        if let Some((name, list)) = line.strip_prefix('$').and_then(|rest| rest.split_once(" =")) {
+            choices.insert(name, list.split('|').map(str::trim).map(choice_of).collect());
+            continue;
+        }
+        for expanded in expanded(line, &choices, "") {
+            let (kind, rest) = expanded.split_once(' ').expect("a line has a kind");
+            let (name, args) = rest.split_once(": ").expect("a line has a name and arguments");
+            runs.push(Run { kind: kind.into(), name: name.into(), args: args.into() });
+        }
+    }
+    runs
+}
+
+/// The word of a choice, and its options: the same but for blanks, unless it states both.
+fn choice_of(choice: &str) -> (String, &str) {
+    match choice.split_once('=') {
+        Some((word, options)) => (word.to_owned(), options),
+        None => (word(choice), choice),
+    }
+}
+
+/// Options as one word.
+fn word(options: &str) -> String {
+    let words: Vec<&str> = options.split_whitespace().collect();
+    words.join("_").replace("--", "").replace(['/', ','], "_")
+}
+
+/// A line with every choice in place of each name; `options` are those that were put in before.
+fn expanded(line: &str, choices: &BTreeMap<&str, Choices<'_>>, options: &str) -> Vec<String> {
+    let Some(start) = line.find(['$', '%']) else { return vec![line.replace('@', &word(options))] };
+    let name = &line[start + 1..];
+    let name = &name[..name.find(|c: char| !c.is_alphanumeric()).unwrap_or(name.len())];
+    let with = |(word, chosen): &(String, &str)| {
+        let line = line.replace(&format!("${name}"), word).replace(&format!("%{name}"), chosen);
+        expanded(&line, choices, &format!("{options} {chosen}"))
+    };
+    choices[name].iter().flat_map(with).collect()
+}
+
+/// A folder that programs write into. Their paths are below it, so that no output names it.
+struct Outputs<'a> {
+    program: &'a Path,
+    folder: &'a Path,
 }
 
 impl Outputs<'_> {
@@ -152,130 +198,6 @@ impl Outputs<'_> {
         self.write("inputs/dyes/PROVENANCE.csv", "file,quantum_yield\nred.csv,0.5\n")
     }
 
-    /// Every model with every option of fluorescence, every method, and every meaning of RGB.
-    fn build_cubes(&self) -> Result<(), StepError> {
-        for options in fluorescences().into_iter().chain(methods()).chain(contracts()) {
-            let name = options.replace("--", "").replace([' ', '/', ','], "_");
-            self.build(&format!("all/{name}"), 3, &options)?;
-        }
-        for (name, options) in SAMPLES {
-            self.build(name, 5, options)?;
-        }
-        Ok(())
-    }
-
-    fn build(&self, name: &str, resolution: u32, options: &str) -> Result<(), StepError> {
-        let cube = format!("cubes/{name}.safetensors");
-        self.make_room(&cube)?;
-        let args = format!("build --resolution {resolution} --output {cube} {options}");
-        self.json(&format!("build/{name}"), &args)
-    }
-
-    fn show_cubes(&self) -> Result<(), StepError> {
-        for (name, _) in SAMPLES {
-            let cube = format!("cubes/{name}.safetensors");
-            self.json_and_text(&format!("inspect/{name}"), &format!("inspect {cube}"))?;
-            for mode in INTERPOLATIONS {
-                let args = format!("verify --points 300 --interpolation {mode} {cube}");
-                self.json(&format!("verify/{name}-{mode}"), &args)?;
-            }
-            for (number, color) in COLORS.into_iter().enumerate() {
-                let record = format!("color/{name}-{number}");
-                let plot = format!("plots/{name}-{number}");
-                self.make_room(&plot)?;
-                let args = format!("color {cube} {color} --plot {plot}");
-                self.json_and_text(&record, &format!("{args}.svg"))?;
-                self.json(&format!("{record}-direct"), &format!("{args}-direct.svg --direct"))?;
-                for mode in INTERPOLATIONS {
-                    let args = format!("color {cube} {color} --interpolation {mode}");
-                    self.json(&format!("{record}-{mode}"), &args)?;
-                }
-            }
-        }
-        Ok(())
-    }
-
-    fn export_cubes(&self) -> Result<(), StepError> {
-        for (name, _) in SAMPLES {
-            for format in ["csv", "wgsl", "glsl", "hlsl", "osl", "coeff"] {
-                let output = format!("exports/{name}-{format}/{name}.{format}");
-                self.make_room(&output)?;
-                let resolution = if format == "coeff" { "--resolution 6" } else { "" };
-                let args = format!("export cubes/{name}.safetensors {output} {resolution}");
-                self.json(&format!("export/{name}-{format}"), &args)?;
-            }
-        }
-        let table = "inspect exports/default-coeff/default.coeff --space acescg";
-        self.json_and_text("inspect/coeff", table)
-    }
-
-    fn bake_pictures(&self) -> Result<(), StepError> {
-        self.json("examples", "examples --out examples")?;
-        for cube in ["default", "photon", "dense", "analytic-photon", "reflectance"] {
-            for (name, form) in [
-                ("material", "material"),
-                ("fast", "material --fast"),
-                ("float", "material --sample float"),
-                ("radiance", "radiance --light D65"),
-                ("radiance-a", "radiance --light A --sample float"),
-            ] {
-                let args = format!("bake cubes/{cube}.safetensors examples --as {form}");
-                self.bake(&format!("{cube}-{name}"), "", &args)?;
-            }
-            // A channel for each pair of bands is slow: one picture.
-            let form = "--as spectral --bands 400:700:60";
-            let args = format!("bake cubes/{cube}.safetensors examples/chart.exr {form}");
-            self.bake(&format!("{cube}-spectral"), "/chart.spectral.exr", &args)?;
-        }
-        let form = "--as spectral --bands 420:660:80 --sample float";
-        let args = format!("bake cubes/default.safetensors examples/chart.exr {form}");
-        self.bake("default-spectral-float", "/chart.spectral.exr", &args)?;
-        for cube in ["default", "photon", "dense"] {
-            let form = "--as spectral --bands 400:700:20 --compact";
-            let args = format!("bake cubes/{cube}.safetensors examples {form}");
-            self.bake(&format!("{cube}-compact"), "", &args)?;
-        }
-        // The pictures are in ACEScg, wider than sRGB.
-        for repair in ["clip", "scale", "nearest"] {
-            let args = format!("bake cubes/srgb.safetensors examples --repair {repair}");
-            self.bake(&format!("srgb-{repair}"), "", &args)?;
-        }
-        for baked in ["default-spectral", "dense-spectral", "default-compact", "photon-compact"] {
-            let file = format!("baked/{baked}/chart.spectral.exr");
-            self.json_and_text(&format!("lint/{baked}"), &format!("lint {file}"))?;
-            for at in ["7,9", "300,200", "420,330"] {
-                self.json_and_text(
-                    &format!("read/{baked}-{at}"),
-                    &format!("read {file} --at {at}"),
-                )?;
-            }
-        }
-        self.make_room("texts/check.html")?;
-        let check = "check examples --cube cubes/default.safetensors";
-        self.json_and_text("check", &format!("{check} --output texts/check.html"))?;
-        let heat = "check examples/chart.exr --illuminant A --adapt none --heat-map heat-map.png";
-        self.json_and_text("check-heat-map", heat)
-    }
-
-    /// Writes a folder named `name`, or one `file` in it.
-    fn bake(&self, name: &str, file: &str, args: &str) -> Result<(), StepError> {
-        self.json(&format!("bake/{name}"), &format!("{args} --output baked/{name}{file}"))
-    }
-
-    fn draw_study(&self) -> Result<(), StepError> {
-        self.json("figures", "figures --resolution 4 --out figures")?;
-        let correct = "figures --resolution 4 --display correct --only 5 --out figures-correct";
-        self.json("figures-correct", correct)?;
-        self.make_room("texts/reproduce.md")?;
-        self.json("reproduce", "reproduce --resolution 4 --output texts/reproduce.md")
-    }
-
-    fn json_and_text(&self, name: &str, args: &str) -> Result<(), StepError> {
-        self.json(name, args)?;
-        let text = self.output(args)?;
-        self.write(&format!("{TEXTS}/{name}.txt"), &text)
-    }
-
     /// Runs the program and keeps its JSON document.
     fn json(&self, name: &str, args: &str) -> Result<(), StepError> {
         let printed = self.output(&format!("{args} --json"))?;
@@ -285,6 +207,10 @@ impl Outputs<'_> {
     /// What the program prints to standard output. Some cubes break a law between their nodes, and
     /// `verify` fails.
     fn output(&self, args: &str) -> Result<String, StepError> {
+        // Programs do not make the folders of the files that they write.
+        for path in args.split_whitespace().filter(|word| word.contains('/')) {
+            self.make_room(path)?;
+        }
         let mut command = Command::new(self.program);
         command.args(args.split_whitespace()).arg("--quiet").current_dir(self.folder);
         let shown = || format!("{} {args}", self.program.display());
@@ -314,57 +240,6 @@ impl Outputs<'_> {
         let path = self.folder.join(file).parent().map(Path::to_owned).unwrap_or_default();
         fs::create_dir_all(&path).map_err(StepError::file(&path))
     }
-}
-
-/// Every list of one word of each group, in order, joined by spaces.
-fn product(groups: &[&[&str]]) -> Vec<String> {
-    groups.iter().fold(vec![String::new()], |lists, words| {
-        let longer = lists.iter().flat_map(|list| words.iter().map(move |word| (list, word)));
-        longer.map(|(list, word)| format!("{list} {word}").trim().to_owned()).collect()
-    })
-}
-
-fn fluorescences() -> Vec<String> {
-    let mixing: &[&str] = &["", "--mixing separate"];
-    let accounting: &[&str] = &["", "--accounting photon"];
-    let density: &[&str] = &["", "--optical-density 1.5"];
-    let sets: &[&str] = &["", "--dyes open8", "--dyes wide14", "--dyes inputs/dyes"];
-    let yields: &[&str] = &["", "--quantum-yield 0.5", "--quantum-yield measured"];
-    let bells: &[&str] = &["", "--absorption-fwhm-nm 30 --emission-fwhm-nm 60"];
-    let dyes = product(&[&["--model dyes"], sets, mixing, accounting, yields, density]);
-    let analytic = product(&[&["--model analytic"], bells, accounting, &yields[..2]]);
-    dyes.into_iter().chain(analytic).collect()
-}
-
-fn methods() -> Vec<String> {
-    product(&[
-        &["--method search", "--method exhaustive", "--method seed", "--method seed-features"],
-        &["--metric de76", "--metric rgb", "--metric de2000 --sweeps 3"],
-        &["", "--mixing separate", "--model analytic", "--model reflectance"],
-    ])
-}
-
-fn contracts() -> Vec<String> {
-    let mut contracts = product(&[
-        &[
-            "--space acescg",
-            "--space aces2065-1",
-            "--space rec2020",
-            "--space p3-d65",
-            "--space srgb",
-            "--space prophoto",
-            "--space adobe-rgb",
-            "--space xyz",
-            "--space 0.7,0.29,0.2,0.7,0.15,0.05,0.3127,0.329",
-        ],
-        &["--illuminant D65", "--illuminant A", "--illuminant inputs/light.csv --adapt none"],
-    ]);
-    contracts.extend(product(&[
-        &["--observer inputs/observer.csv"],
-        &["--illuminant D60", "--illuminant D55", "--illuminant D50", "--illuminant E"],
-        &["--slope-max-per-nm none", "--slope-max-per-nm 0.003", "--model analytic"],
-    ]));
-    contracts
 }
 
 /// A JSON document with 0 for the seconds that a run took.
@@ -411,8 +286,32 @@ mod tests {
     }
 
     #[test]
-    fn a_product_of_options_has_every_combination() {
-        let options = product(&[&["", "a"], &["b", "c"]]);
-        assert_eq!(options, ["b", "c", "a b", "a c"]);
+    fn a_line_runs_once_for_each_combination_of_choices() {
+        let script = "# a\n$b = |--c d\n$e = f=--g|h\njson @/$e: x %b %e cubes/$e\nboth y: z\n";
+        let run = |kind: &str, name: &str, args: &str| Run {
+            kind: kind.into(),
+            name: name.into(),
+            args: args.into(),
+        };
+        let expected = [
+            run("json", "g/f", "x  --g cubes/f"),
+            run("json", "c_d_g/f", "x --c d --g cubes/f"),
+            run("json", "h/h", "x  h cubes/h"),
+            run("json", "c_d_h/h", "x --c d h cubes/h"),
+            run("both", "y", "z"),
+        ];
+        let found = runs(script);
+        assert_eq!(found.len(), expected.len());
+        assert!(expected.iter().all(|run| found.contains(run)), "{found:?}");
+    }
+
+    #[test]
+    fn no_two_runs_have_one_name() {
+        let mut names: Vec<String> = runs(SCRIPT).into_iter().map(|run| run.name).collect();
+        assert!(names.len() > 500, "{}", names.len());
+        names.sort_unstable();
+        let count = names.len();
+        names.dedup();
+        assert_eq!(names.len(), count);
     }
 }
