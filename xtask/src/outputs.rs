@@ -295,9 +295,9 @@ mod tests {
         };
         let expected = [
             run("json", "g/f", "x  --g cubes/f"),
-            run("json", "c_d_g/f", "x --c d --g cubes/f"),
+            run("json", "g_c_d/f", "x --c d --g cubes/f"),
             run("json", "h/h", "x  h cubes/h"),
-            run("json", "c_d_h/h", "x --c d h cubes/h"),
+            run("json", "h_c_d/h", "x --c d h cubes/h"),
             run("both", "y", "z"),
         ];
         let found = runs(script);

@@ -6,7 +6,7 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// The packages whose programs the README's examples and the tests of the bindings run.
+/// The packages whose programs the examples of docs/guide.md and the tests of the bindings run.
 const PROGRAM_PACKAGES: [&str; 2] = ["upglow-cli", "upglow-study"];
 
 /// One step of the check.
