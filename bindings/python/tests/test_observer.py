@@ -98,12 +98,12 @@ NM = np.arange(380.0, 781.0, 5.0)
         (lambda: upglow.Observer((NM[::2], bells(NM[::2]))), "custom: sample 1: 390 nm after 380 nm"),
         (lambda: upglow.Observer((NM, -bells(NM))), 'custom: sample 0: -0.0'),
         (lambda: upglow.Observer((NM - 30, bells(NM))), "custom: sample 0: 0.0"),
-        (lambda: upglow.Observer((NM, np.ones((81, 3)))), "custom: x, y and z tell no three colors"),
+        (lambda: upglow.Observer((NM, np.ones((81, 3)))), "custom: x, y and z are linearly dependent"),
         (
             lambda: upglow.Contract(
                 observer=(NM, bells(NM)), illuminant=upglow.Illuminant.line(365.0, 0.5)
             ),
-            "the observer custom sees no light of 365 nm line in steps of 5 nm, expected some",
+            "the observer custom sees nothing of the light 365 nm line in sums over 5 nm",
         ),
     ],
 )

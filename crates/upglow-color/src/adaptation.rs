@@ -3,15 +3,15 @@
 use crate::matrix::Matrix3;
 use crate::values::Xyz;
 
-/// What happens to colors when the space's white is not the illuminant's.
+/// How colors of the RGB space are adapted to the illuminant's white.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Adaptation {
-    /// RGB (1, 1, 1) is the perfect diffuser under the illuminant: Bradford's cone responses are
-    /// scaled from one white to the other.
+    /// Bradford's cone responses are scaled from the space's white to the illuminant's, so RGB (1, 1, 1)
+    /// is the perfect diffuser.
     #[default]
     Bradford,
-    /// The space's own matrix, unchanged: R = G = B is then not a flat spectrum.
+    /// The space's own matrix is used unchanged. Grays are flat only if both whites are the same.
     None,
 }
 
@@ -20,14 +20,14 @@ const LMS_FROM_XYZ: Matrix3 =
     Matrix3([[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]]);
 
 impl Adaptation {
-    /// The matrix that takes tristimulus values seen under `source` to those seen under `target`.
+    /// The matrix from tristimulus values under the white `source` to those under the white `target`.
     pub fn target_from_source(self, source: Xyz, target: Xyz) -> Matrix3 {
         match self {
             Self::None => Matrix3::IDENTITY,
             Self::Bradford => {
                 let (from, to) = (LMS_FROM_XYZ * source.0, LMS_FROM_XYZ * target.0);
                 let gains = Matrix3::diagonal([0, 1, 2].map(|k| to[k] / from[k]));
-                let xyz_from_lms = LMS_FROM_XYZ.inverse().expect("the constant is regular");
+                let xyz_from_lms = LMS_FROM_XYZ.inverse().expect("the constant is invertible");
                 xyz_from_lms * gains * LMS_FROM_XYZ
             }
         }
@@ -41,7 +41,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bradford_takes_one_white_to_the_other() {
+    fn bradford_maps_one_white_to_the_other() {
         let (d60, d65) = (Xyz([0.952_65, 1.0, 1.008_83]), Xyz([0.950_43, 1.0, 1.088_80]));
         let adapted = Adaptation::Bradford.target_from_source(d60, d65) * d60.0;
         for k in 0..3 {

@@ -1,22 +1,22 @@
-//! Options whose values are words: one table gives each its names, its parser and its error.
+//! Options whose values are words. One table gives names, parser and error.
 
-/// A word that names no value of an option.
+/// A word that is not a value of an option.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("unknown {what} {found:?}, expected {expected}")]
 pub struct UnknownChoice {
-    /// What is chosen.
+    /// What the option chooses.
     pub what: &'static str,
     /// The word given.
     pub found: String,
-    /// The words there are, as a sentence lists them.
+    /// The known words, as a phrase: "a, b or c".
     pub expected: String,
 }
 
 /// An option whose values are words. The macro `choices!` implements it, with `Display` and `FromStr`.
 pub trait Choice: Copy + 'static {
-    /// What is chosen, as messages say it.
+    /// What the option chooses, for messages.
     const WHAT: &'static str;
-    /// Every value, in the order in which messages and help list them.
+    /// Every value, in the order of messages and help.
     const ALL: &'static [Self];
 
     /// The word for this value.
@@ -29,10 +29,10 @@ pub trait Choice: Copy + 'static {
     ///
     /// # Errors
     ///
-    /// [`UnknownChoice`] lists the words there are, without former ones.
+    /// [`UnknownChoice`] lists the known words, without former ones.
     fn named(word: &str) -> Result<Self, UnknownChoice> {
-        let is_meant = |value: &Self| value.name() == word || value.aliases().contains(&word);
-        Self::ALL.iter().copied().find(is_meant).ok_or_else(|| UnknownChoice {
+        let has_name = |value: &Self| value.name() == word || value.aliases().contains(&word);
+        Self::ALL.iter().copied().find(has_name).ok_or_else(|| UnknownChoice {
             what: Self::WHAT,
             found: word.into(),
             expected: alternatives(Self::ALL.iter().map(|value| value.name())),
@@ -49,7 +49,7 @@ fn alternatives(words: impl Iterator<Item = &'static str>) -> String {
     }
 }
 
-/// With the feature `serde` a choice is serialized as its word.
+/// With the feature `serde`, a choice is serialized as its word.
 #[cfg(feature = "serde")]
 #[doc(hidden)]
 #[macro_export]
@@ -137,7 +137,7 @@ mod tests {
     );
 
     #[test]
-    fn every_word_comes_back_and_former_words_are_read() {
+    fn words_round_trip_and_former_words_are_read() {
         for &gloss in Gloss::ALL {
             assert_eq!(gloss.to_string().parse(), Ok(gloss));
         }
@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn an_unknown_word_is_told_what_was_expected() {
+    fn the_error_for_an_unknown_word_lists_the_known_ones() {
         let unknown = "shiny".parse::<Gloss>().unwrap_err();
         assert_eq!(unknown.to_string(), "unknown gloss \"shiny\", expected dull, thin or thick");
         assert_eq!(alternatives(["one"].into_iter()), "one");

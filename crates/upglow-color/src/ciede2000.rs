@@ -14,16 +14,16 @@ pub fn ciede2000(reference: Lab, sample: Lab) -> f64 {
     (l * l + c * c + h * h).sqrt()
 }
 
-/// Three numbers whose squares add up to the square of CIEDE2000, and their derivatives by the
-/// sample's coordinates, `[residual][L a b]`.
+/// Three numbers whose squares add up to the square of CIEDE2000, and their derivatives with respect to
+/// the sample's coordinates, `[residual][L a b]`.
 ///
-/// The residuals are `ΔL'/S_L`; `ΔC'/S_C + R_T/2 · ΔH'/S_H`; `√(1 − R_T²/4) · ΔH'/S_H`. A solver needs
-/// them apart: the difference as one residual has no usable second order.
+/// The residuals are `ΔL'/S_L`; `ΔC'/S_C + R_T/2 · ΔH'/S_H`; `√(1 − R_T²/4) · ΔH'/S_H`. A least-squares
+/// solver needs all three: their norm alone as a residual gives it no useful curvature.
 ///
 /// # Source
 ///
-/// `sharma`, equations 2 to 22. Hue angles are used as unit vectors: the mean hue is the direction
-/// of their sum, which is the branch that equation 14 picks by cases.
+/// `sharma`, equations 2 to 22. Hues are unit vectors here, not angles: the mean hue is the direction
+/// of their sum, the case that equation 14 selects.
 pub fn ciede2000_residuals(reference: Lab, sample: Lab) -> ([f64; 3], Matrix3) {
     let (lightness, by_l) = lightness_residual(reference.l, sample.l);
     let [chroma, hue] = chromatic_residuals(reference, sample);
@@ -35,7 +35,7 @@ pub fn ciede2000_residuals(reference: Lab, sample: Lab) -> ([f64; 3], Matrix3) {
     ([lightness, chroma.value, hue.value], Matrix3(jacobian))
 }
 
-/// `ΔL'/S_L` and its derivative by the sample's L.
+/// `ΔL'/S_L` and its derivative with respect to the sample's L.
 fn lightness_residual(l1: f64, l2: f64) -> (f64, f64) {
     let from_middle = (l1 + l2) / 2.0 - 50.0;
     let square = from_middle * from_middle;
@@ -85,7 +85,7 @@ fn hue_difference(first: [Jet; 3], second: [Jet; 3]) -> (Jet, [Jet; 2]) {
     let cross = a1 * b2 - b1 * a2;
     let dot = a1 * a2 + b1 * b2;
     let both = product + dot;
-    // 1 + cos Δh loses all its digits where the hues are opposite.
+    // 1 + cos Δh cancels to nothing for opposite hues.
     if both.value <= product.value * 1e-15 {
         return opposite_hues(first, second);
     }
@@ -95,7 +95,7 @@ fn hue_difference(first: [Jet; 3], second: [Jet; 3]) -> (Jet, [Jet; 2]) {
     (delta_h, [x / norm, y / norm])
 }
 
-/// Where one color is gray the other's hue is the mean; two grays have hue 0.
+/// The mean hue if one color is gray: that of the other, or 0 for two grays.
 fn gray_mean_hue([a1, b1, c1]: [Jet; 3], [a2, b2, c2]: [Jet; 3]) -> [Jet; 2] {
     if c1.value > 0.0 {
         [a1 / c1, b1 / c1]
@@ -106,8 +106,8 @@ fn gray_mean_hue([a1, b1, c1]: [Jet; 3], [a2, b2, c2]: [Jet; 3]) -> [Jet; 2] {
     }
 }
 
-/// Hues 180° apart: the mean is 90° above the smaller angle. CIEDE2000 jumps here, so the
-/// derivatives of the hue are left out.
+/// Hues 180° apart: the mean is 90° above the smaller angle. CIEDE2000 is discontinuous here, so the
+/// mean hue gets no derivatives.
 fn opposite_hues([a1, b1, c1]: [Jet; 3], [a2, b2, c2]: [Jet; 3]) -> (Jet, [Jet; 2]) {
     let in_first_turn = |a: Jet, b: Jet| b.value.atan2(a.value).rem_euclid(std::f64::consts::TAU);
     let rises = in_first_turn(a1, b1) < in_first_turn(a2, b2);
@@ -116,7 +116,7 @@ fn opposite_hues([a1, b1, c1]: [Jet; 3], [a2, b2, c2]: [Jet; 3]) -> (Jet, [Jet; 
     (delta_h, [-b / c, a / c].map(|v| Jet::constant(v.value)))
 }
 
-/// T, from the mean hue as a unit vector.
+/// T from the mean hue, a unit vector.
 fn hue_weight([cos, sin]: [Jet; 2]) -> Jet {
     let turn = |[c, s]: [Jet; 2]| [c * cos - s * sin, s * cos + c * sin];
     let twice = turn([cos, sin]);
@@ -133,7 +133,7 @@ fn hue_weight([cos, sin]: [Jet; 2]) -> Jet {
         + 1.0
 }
 
-/// `R_T`, which tilts the ellipses of blue.
+/// `R_T`, the rotation term for blues.
 fn rotation(mean_c: Jet, [cos, sin]: [Jet; 2]) -> Jet {
     let degrees = sin.atan2(cos) * 1f64.to_radians().recip();
     let wrapped = if degrees.value < 0.0 { degrees + 360.0 } else { degrees };
@@ -157,7 +157,7 @@ mod tests {
             // Central differences with this step err by about its square and by rounding over it.
             const STEP: f64 = 1e-5;
             const TOLERANCE: f64 = 1e-5;
-            // CIEDE2000 jumps where hues are opposite and has no slope at gray.
+            // CIEDE2000 is discontinuous at opposite hues and has no derivative at gray.
             let cross = reference.a * sample.b - reference.b * sample.a;
             let product = reference.a.hypot(reference.b) * sample.a.hypot(sample.b);
             prop_assume!(cross.abs() > 0.1 * product && sample.a.hypot(sample.b) > 1.0);
@@ -177,14 +177,14 @@ mod tests {
         }
 
         #[test]
-        fn order_does_not_matter(first in any_lab(), second in any_lab()) {
+        fn the_difference_is_symmetric(first in any_lab(), second in any_lab()) {
             let (there, back) = (ciede2000(first, second), ciede2000(second, first));
             // Rounding only.
             prop_assert!((there - back).abs() < 1e-9 * (1.0 + there));
         }
 
         #[test]
-        fn a_color_does_not_differ_from_itself(color in any_lab()) {
+        fn a_color_has_no_difference_from_itself(color in any_lab()) {
             prop_assert!(ciede2000(color, color) < 1e-12);
         }
     }

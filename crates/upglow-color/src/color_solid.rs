@@ -1,4 +1,4 @@
-//! What no material can beat: the convex body of the colors that any surface can show.
+//! The convex set of colors that materials of one kind can have under one light.
 
 use crate::colorimetry::Colorimetry;
 use crate::metric::Metric;
@@ -6,8 +6,8 @@ use crate::values::Xyz;
 
 /// The set of colors of all reflectances, or of all fluorescent materials, under one light.
 ///
-/// The set is convex; it is known by its support: for each direction the color that lies furthest
-/// out, which a material that is all-or-nothing at each wavelength shows.
+/// The set is convex, and defined by its support function: for each direction, the color furthest in
+/// that direction. It belongs to a material that reflects or re-radiates all or nothing of each band.
 #[derive(Clone, Debug)]
 #[must_use]
 pub struct ColorSolid {
@@ -28,7 +28,7 @@ struct Band {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 pub struct Nearest {
-    /// The nearest color that the solid holds, by Euclidean distance in XYZ; a color inside itself.
+    /// The nearest color of the solid by Euclidean distance in XYZ; for a color inside, the color itself.
     pub color: Xyz,
     /// Euclidean distance to it in XYZ; 0 for a color inside.
     pub distance: f64,
@@ -37,21 +37,21 @@ pub struct Nearest {
 }
 
 impl Nearest {
-    /// The answer for a color inside.
+    /// The result for a color inside.
     pub(crate) fn itself(color: Xyz) -> Self {
         Self { color, distance: 0.0, de2000: 0.0 }
     }
 }
 
 /// Colors closer than this in XYZ count as inside. Larger hides real gaps (one ΔE00 is about 1e-3
-/// near white); smaller calls white, which is a corner of the solid, unreachable by rounding.
+/// near white); smaller makes white, which is a corner of the solid, unreachable because of rounding.
 const ON_THE_SURFACE: f64 = 1e-9;
 
-/// Where the search stops: the nearest point is known to this relative gap between the distance
-/// found and the lower bound that the support proves.
+/// The search stops at this relative difference between the distance found and the lower bound that
+/// the support function proves.
 const RELATIVE_GAP: f64 = 1e-9;
 
-/// Enough for any polytope here: the search takes 10 to 40 steps. It bounds rounding stalls.
+/// Ends searches that rounding would keep going; they take 10 to 40 steps.
 const STEP_LIMIT: usize = 500;
 
 impl ColorSolid {
@@ -64,10 +64,10 @@ impl ColorSolid {
         Self::new(colorimetry, false)
     }
 
-    /// The colors of all ideal fluorescent materials: each photon of a band goes, as at most one
-    /// photon, to that band or to any longer wavelength.
+    /// The colors of all ideal fluorescent materials: each incident photon leaves as at most one
+    /// photon, in its own band or at any longer wavelength.
     ///
-    /// In energy, light moved from λi to λo keeps the share λi/λo:
+    /// Light moved from λi to λo keeps the share λi/λo of its energy:
     /// h(n) = Σ E(λi) · max(0, max over λo ≥ λi of (λi/λo) n·x̄ȳz̄(λo)).
     pub fn fluorescence(colorimetry: &Colorimetry) -> Self {
         Self::new(colorimetry, true)
@@ -91,7 +91,7 @@ impl ColorSolid {
     /// The color of the solid that lies furthest in direction `n`.
     pub fn support(&self, n: [f64; 3]) -> Xyz {
         let mut sum = Xyz::default();
-        // The outgoing color of one unit of photons times wavelength, best so far from the red end.
+        // Color of a photon at the best outgoing wavelength so far; bands run from the red end.
         let mut best = [0.0; 3];
         for band in self.bands.iter().rev() {
             let per_photon = band.matching.map(|m| m / band.wavelength_nm);
@@ -107,14 +107,14 @@ impl ColorSolid {
         sum
     }
 
-    /// Whether some material of this kind shows `color`.
+    /// Whether some material of this kind has this color.
     pub fn contains(&self, color: Xyz) -> bool {
-        self.search(color, Goal::Verdict).is_none()
+        self.search(color, false).is_none()
     }
 
-    /// The color nearest to `color` that some material of this kind shows.
+    /// The nearest color that some material of this kind has.
     pub fn nearest(&self, color: Xyz) -> Nearest {
-        self.search(color, Goal::Distance).map_or(Nearest::itself(color), |offset| {
+        self.search(color, true).map_or(Nearest::itself(color), |offset| {
             let distance = dot(offset, offset).sqrt();
             let nearest = color + offset.into();
             let de2000 = Metric::De2000.distance(&self.colorimetry, color, nearest);
@@ -122,16 +122,17 @@ impl ColorSolid {
         })
     }
 
-    /// The way from `color` to the nearest point; `None` from inside or on the surface.
+    /// The vector from `color` to the nearest point of the solid, or, unless `is_nearest` is needed,
+    /// to some point that proves `color` outside; `None` if it is inside or on the surface.
     ///
-    /// Walks towards that point; each step asks the support for a point further on, and
-    /// keeps the corners of the simplex that the nearest point so far lies in.
+    /// Each step adds the support point in the direction of `color` to a simplex, and keeps the
+    /// corners of the face that the point nearest to `color` lies in.
     ///
     /// # Source
     ///
     /// `gilbert`; the nearest point of a simplex by trying all its faces, which is exact for up to
     /// four corners.
-    fn search(&self, color: Xyz, goal: Goal) -> Option<[f64; 3]> {
+    fn search(&self, color: Xyz, is_nearest: bool) -> Option<[f64; 3]> {
         let relative = |p: Xyz| (p - color).0;
         let mut nearest = relative(self.support([1.0; 3]));
         let mut simplex = Simplex::from_iter([nearest]);
@@ -142,7 +143,7 @@ impl ColorSolid {
             }
             let next = relative(self.support(nearest.map(|v| -v)));
             let bound = dot(nearest, next);
-            if square - bound <= RELATIVE_GAP * square || (goal == Goal::Verdict && bound > 0.0) {
+            if square - bound <= RELATIVE_GAP * square || (!is_nearest && bound > 0.0) {
                 break;
             }
             simplex.push(next);
@@ -156,19 +157,11 @@ impl ColorSolid {
     }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Goal {
-    /// Inside or outside: stop at the first plane that separates.
-    Verdict,
-    /// The distance itself.
-    Distance,
-}
-
-/// A face holds at most this many corners of a simplex: in three dimensions the nearest point of
-/// more lies in a face of fewer.
+/// Most corners of a face: in three dimensions the nearest point of more corners lies in a face of
+/// fewer.
 const FACE: usize = 4;
 
-/// The corners of a simplex or of a face, kept in place: a search tries dozens of faces.
+/// The corners of a simplex or of a face, without allocation: a search tries dozens of faces.
 #[derive(Clone, Copy, Debug)]
 struct Simplex {
     points: [[f64; 3]; FACE + 1],
@@ -185,7 +178,7 @@ impl Simplex {
         &self.points[..self.count]
     }
 
-    /// Those whose bits are set.
+    /// The corners whose bits are set.
     fn face(&self, mask: u32) -> Self {
         let numbered = self.points().iter().enumerate();
         numbered.filter(|(i, _)| mask >> i & 1 == 1).map(|(_, point)| *point).collect()
@@ -200,8 +193,8 @@ impl FromIterator<[f64; 3]> for Simplex {
     }
 }
 
-/// The point nearest to the origin of the convex hull of some points, and the corners of the face
-/// it lies in.
+/// The point of the convex hull of some points nearest to the origin, and the corners of the face it
+/// lies in.
 fn nearest_of_simplex(corners: &Simplex) -> ([f64; 3], Simplex) {
     let masks = (1..1_u32 << corners.count).filter(|mask| mask.count_ones() as usize <= FACE);
     let (point, mask) = masks
@@ -211,8 +204,8 @@ fn nearest_of_simplex(corners: &Simplex) -> ([f64; 3], Simplex) {
     (point, corners.face(mask))
 }
 
-/// The point nearest to the origin of the plane through a face; `None` if it is outside the face
-/// or the face is degenerate.
+/// The point of the plane through a face nearest to the origin; `None` if it is outside the face or
+/// the face is degenerate.
 fn nearest_of_plane(face: &[[f64; 3]]) -> Option<[f64; 3]> {
     let edges: Simplex = face[1..].iter().map(|p| sub(*p, face[0])).collect();
     let edges = edges.points();
@@ -239,7 +232,7 @@ fn solve_gram(edges: &[[f64; 3]], origin: [f64; 3]) -> Option<[f64; FACE - 1]> {
     for pivot in 0..n {
         let pivot_row = rows[pivot];
         let diagonal = pivot_row[pivot];
-        // Rounding of the elimination: below this share of the edge's own length nothing is left.
+        // Below this share of the edge's squared length only rounding is left.
         if diagonal <= 1e-14 * dot(edges[pivot], edges[pivot]) {
             return None;
         }
@@ -286,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn pure_green_is_shown_by_nothing_and_the_distance_says_how_far() {
+    fn pure_green_is_unreachable_at_a_distance() {
         let (colorimetry, reflectance, fluorescence) = solids();
         let green = colorimetry.xyz_from_rgb(LinearRgb([0.0, 1.0, 0.0]));
         let (r, f) = (reflectance.nearest(green), fluorescence.nearest(green));
@@ -311,7 +304,7 @@ mod tests {
                 let beyond = edge + 0.01 * Xyz(n);
                 prop_assert!(!solid.contains(beyond));
                 let nearest = solid.nearest(beyond);
-                // The edge point itself is one candidate; the plane through it proves the rest.
+                // The support point is at this distance; the plane through it proves that none is nearer.
                 prop_assert!(nearest.distance <= 0.01 * dot(n, n).sqrt() + 1e-9);
                 prop_assert!((nearest.distance - 0.01 * dot(n, n).sqrt()).abs() < 1e-6);
             }

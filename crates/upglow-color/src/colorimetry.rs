@@ -1,4 +1,4 @@
-//! A contract on a wavelength grid: the numbers that every later sum needs.
+//! White, matrices and weights of a contract on a wavelength grid.
 
 use crate::contract::{Contract, ContractError};
 use crate::grid::Grid;
@@ -32,8 +32,7 @@ impl Colorimetry {
             return Err(ContractError::Dark { observer, illuminant, step_nm });
         }
         let irradiance: Vec<f64> = light.iter().map(|l| l / luminance).collect();
-        let weights = weights(&irradiance, &matching);
-        let white = sum(&weights);
+        let (weights, white) = weights(&irradiance, &matching);
         let space_white = Xyz::from_chromaticity(contract.space.white());
         let xyz_from_rgb = contract.adaptation.target_from_source(space_white, white)
             * contract.space.xyz_from_rgb();
@@ -70,7 +69,7 @@ impl Colorimetry {
         self.white
     }
 
-    /// The color that linear RGB stands for.
+    /// The color of linear RGB.
     pub fn xyz_from_rgb(&self, rgb: LinearRgb) -> Xyz {
         Xyz(self.xyz_from_rgb * rgb.0)
     }
@@ -100,18 +99,17 @@ impl Colorimetry {
         reflectance.into_iter().zip(&self.weights).map(|(r, w)| r * Xyz(*w)).sum()
     }
 
-    /// The same eye under another light that brings as much power as this one, in 300 to 830 nm.
+    /// The same for `light`, scaled to as much power over the grid as this one has.
     ///
-    /// Unlike a contract of its own, whose white is always Y = 1, this compares lights of equal
-    /// power: under an ultraviolet lamp a white wall is nearly black and fluorescence is not.
+    /// A contract's white always has Y = 1. Lights of equal power compare instead: under an
+    /// ultraviolet lamp white is nearly black, and what fluoresces is not.
     #[must_use]
     pub fn relit(&self, observer: &Observer, light: &Illuminant) -> Self {
         let (matching, light) = (observer.on(self.grid), sampled(light, self.grid));
         let power = |bands: &[f64]| bands.iter().sum::<f64>();
         let scale = power(&self.irradiance) / power(&light);
         let irradiance: Vec<f64> = light.iter().map(|l| l * scale).collect();
-        let weights = weights(&irradiance, &matching);
-        let white = sum(&weights);
+        let (weights, white) = weights(&irradiance, &matching);
         Self { irradiance, matching, weights, white, ..self.clone() }
     }
 }
@@ -121,12 +119,11 @@ fn sampled(light: &Illuminant, grid: Grid) -> Vec<f64> {
     grid.wavelengths_nm().map(|nm| light.power().at(nm)).collect()
 }
 
-fn weights(irradiance: &[f64], matching: &[[f64; 3]]) -> Vec<[f64; 3]> {
-    irradiance.iter().zip(matching).map(|(e, m)| m.map(|v| e * v)).collect()
-}
-
-fn sum(colors: &[[f64; 3]]) -> Xyz {
-    colors.iter().copied().map(Xyz).sum()
+/// Integration weights, and their sum, the white.
+fn weights(irradiance: &[f64], matching: &[[f64; 3]]) -> (Vec<[f64; 3]>, Xyz) {
+    let weights: Vec<_> = irradiance.iter().zip(matching).map(|(e, m)| m.map(|v| e * v)).collect();
+    let white = weights.iter().copied().map(Xyz).sum();
+    (weights, white)
 }
 
 #[cfg(test)]
@@ -144,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn under_bradford_one_is_the_perfect_diffuser_in_every_space() {
+    fn with_bradford_rgb_1_is_the_perfect_diffuser_in_every_space() {
         for name in crate::RgbSpace::names() {
             let space = crate::RgbSpace::named(name).unwrap();
             let colorimetry = Contract { space, ..Contract::default() }.on(Grid::FIT);
@@ -163,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn relit_by_its_own_light_nothing_changes() {
+    fn relighting_with_the_same_light_changes_nothing() {
         let contract = Contract::default();
         let colorimetry = contract.on(Grid::FIT);
         let relit = colorimetry.relit(&contract.observer, &contract.illuminant);
@@ -171,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn rgb_survives_the_way_to_xyz_and_back() {
+    fn rgb_to_xyz_and_back_is_the_identity() {
         let colorimetry = Contract::default().on(Grid::FIT);
         let rgb = LinearRgb([0.9, -0.2, 1.7]);
         assert_close(colorimetry.rgb_from_xyz(colorimetry.xyz_from_rgb(rgb)).0, rgb.0, ROUNDING);

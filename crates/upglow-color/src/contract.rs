@@ -1,4 +1,4 @@
-//! What must be agreed before RGB means a color.
+//! What defines which color an RGB triple is.
 
 use crate::adaptation::Adaptation;
 use crate::colorimetry::Colorimetry;
@@ -7,41 +7,40 @@ use crate::illuminant::Illuminant;
 use crate::observer::Observer;
 use crate::rgb_space::RgbSpace;
 
-/// The agreement that turns RGB into a color: nothing in upglow guesses any part of it.
+/// What defines which color an RGB triple is. No part of it is guessed.
 ///
-/// The default is ACEScg under D65 for the CIE 1931 2° observer, Bradford-adapted.
+/// The default is ACEScg under D65 for the CIE 1931 2° observer with Bradford adaptation.
 ///
 /// # Other observers
 ///
-/// XYZ, whites and Lab are those of the contract's observer. An RGB space is standardized by
-/// chromaticities of the CIE 1931 observer only; what another eye sees of a display's primaries would
-/// take their spectra, which no standard gives. The space's numbers are therefore kept as they are: its
-/// matrix is nominal, and RGB names the color whose tristimulus values *for this observer* are the
-/// matrix's. The white of the light is computed for the observer, and adaptation goes from the
-/// space's nominal white to it. With [`Adaptation::Bradford`] RGB (1, 1, 1) is thus the perfect
-/// diffuser and grays are flat for every observer; with [`Adaptation::None`] they are where the
-/// numbers put them.
+/// XYZ, whites and Lab are those of the contract's observer. Standards define RGB spaces by
+/// chromaticities for the CIE 1931 observer only; to convert them to another observer would take the
+/// spectra of the primaries, which no standard gives. The chromaticities are therefore used unchanged
+/// for every observer: RGB means the color whose tristimulus values *for this observer* are the
+/// space's matrix times RGB. The white of the light is computed for the observer, and adaptation goes
+/// from the space's nominal white to it. With [`Adaptation::Bradford`] RGB (1, 1, 1) is therefore the
+/// perfect diffuser, and grays are flat, for every observer; with [`Adaptation::None`] they may not be.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Contract {
-    /// Primaries and white of the RGB numbers.
+    /// Primaries and white of RGB.
     #[cfg_attr(feature = "serde", serde(flatten))]
     pub space: RgbSpace,
     /// The light that the material is seen under.
     pub illuminant: Illuminant,
-    /// The eye that sees it.
+    /// Whose color vision counts.
     pub observer: Observer,
     /// What happens where the space's white is not the illuminant's.
     pub adaptation: Adaptation,
 }
 
-/// Why the parts of a contract do not go together.
+/// Why a contract is rejected.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ContractError {
-    /// The observer sees nothing of the light.
+    /// The observer does not see the light.
     #[error(
-        "the observer {observer} sees no light of {illuminant} in steps of {step_nm} nm, expected some"
+        "the observer {observer} sees nothing of the light {illuminant} in sums over {step_nm} nm, expected Y > 0"
     )]
     Dark {
         /// Name of the observer.
@@ -51,9 +50,9 @@ pub enum ContractError {
         /// Step of the sums, nm.
         step_nm: u32,
     },
-    /// Nothing can be compared with the light's white: X, Y or Z of it is zero, or no matrix leads back
-    /// from XYZ to RGB.
-    #[error("the white of {illuminant} for {observer} is XYZ {white:?}, expected one to adapt to")]
+    /// Colors cannot be adapted to the light's white: its X, Y or Z is zero, or the matrix from RGB to
+    /// XYZ has no inverse.
+    #[error("the white of {illuminant} for {observer} is XYZ {white:?}, expected X, Y and Z > 0")]
     White {
         /// Name of the observer.
         observer: String,
@@ -65,12 +64,12 @@ pub enum ContractError {
 }
 
 impl Contract {
-    /// Whether the parts go together on both grids: the observer sees the light, and colors can be
-    /// converted both ways. Contracts of built-in lights and observers always do.
+    /// Checks on both grids that the observer sees the light and that colors can be converted in both
+    /// directions. Contracts of built-in lights and observers always pass.
     ///
     /// # Errors
     ///
-    /// [`ContractError`] says what does not.
+    /// [`ContractError`] if one of these fails.
     pub fn check(&self) -> Result<(), ContractError> {
         for grid in [Grid::FIT, Grid::FINE] {
             Colorimetry::try_new(self, grid)?;
@@ -78,11 +77,11 @@ impl Contract {
         Ok(())
     }
 
-    /// The contract with its sums taken over `grid`.
+    /// White, matrices and weights of the contract by sums over `grid`.
     ///
     /// # Panics
     ///
-    /// If the contract's light or observer is not built in and [`Contract::check`] refuses it.
+    /// If [`Contract::check`] fails, which it can only for lights and observers that are not built in.
     pub fn on(&self, grid: Grid) -> Colorimetry {
         Colorimetry::try_new(self, grid).unwrap_or_else(|error| panic!("{error}"))
     }
@@ -94,7 +93,7 @@ mod tests {
     use crate::spectrum::Spectrum;
 
     #[test]
-    fn contracts_of_what_is_built_in_hold() {
+    fn every_built_in_light_makes_a_valid_contract() {
         for name in Illuminant::NAMES {
             let illuminant = Illuminant::named(name).unwrap();
             assert_eq!(Contract { illuminant, ..Contract::default() }.check(), Ok(()), "{name}");
@@ -107,12 +106,12 @@ mod tests {
         let refused = Contract { illuminant, ..Contract::default() }.check().unwrap_err();
         assert_eq!(
             refused.to_string(),
-            "the observer CIE 1931 2° sees no light of needle in steps of 5 nm, expected some"
+            "the observer CIE 1931 2° sees nothing of the light needle in sums over 5 nm, expected Y > 0"
         );
     }
 
     #[test]
-    fn a_light_without_short_wavelengths_is_no_white() {
+    fn a_light_without_short_wavelengths_is_refused() {
         let values =
             Grid::FINE.wavelengths_nm().map(|nm| f64::from(u8::from(nm > 700.0))).collect();
         let red = Illuminant::from_spectrum("red", &Spectrum::new(Grid::FINE, values).unwrap());

@@ -1,35 +1,35 @@
-//! The measured dyes that come with the program. A new one is a column of `tables/dyes.csv`.
+//! The built-in measured dyes. A new one is two columns of `tables/dyes.csv`.
 
 use crate::grid::Grid;
 use crate::samples::{SampleRules, SamplesError, curves_from_samples};
 use crate::spectrum::Spectrum;
 use crate::tables::dyes::{DYE_SETS, DYES, DYES_FIRST_NM, DYES_STEP_NM, DyeRow};
 
-/// A dye as somebody measured it.
+/// A measured dye.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeasuredDye {
-    /// The dye's name, without blanks.
+    /// The dye's name, without spaces.
     pub name: String,
     /// Absorption or excitation spectrum, dimensionless, on [`Grid::FINE`]; as published, 1 at its peak.
     pub absorption: Spectrum,
     /// Emission spectrum, relative, on [`Grid::FINE`]; as published, 1 at its peak.
     pub emission: Spectrum,
-    /// Emitted photons per absorbed photon, 0..=1; `None` where nobody published it.
+    /// Emitted photons per absorbed photon, 0..=1; `None` if unpublished.
     pub quantum_yield: Option<f64>,
-    /// Who measured it, where it was published and on what terms.
+    /// Who measured it, where it was published, and under what terms.
     pub provenance: String,
 }
 
 impl MeasuredDye {
-    /// A dye from samples: wavelengths (nm) that ascend from 300 to 830 nm in steps of at most 5 nm, and
-    /// for each the absorption, 0 to 1, and the emission, relative, 0 or more. Not-a-number at either
-    /// end of a curve means "not measured there" and counts as zero.
+    /// A dye from samples: ascending wavelengths (nm) from 300 to 830 nm in steps of at most 5 nm, and
+    /// for each the absorption, 0 to 1, and the relative emission, 0 or more. NaN at either end of a
+    /// curve means "not measured there" and counts as zero.
     ///
-    /// Its quantum yield is `None`, and its provenance empty: set what is known.
+    /// Quantum yield and provenance are empty: set what is known.
     ///
     /// # Errors
     ///
-    /// [`SamplesError`] names the index, from 0, and what was expected there.
+    /// [`SamplesError`] names the index of the sample, and what was expected there.
     pub fn from_samples(
         name: &str,
         wavelengths_nm: &[f64],
@@ -43,12 +43,12 @@ impl MeasuredDye {
         Ok(Self { name, absorption, emission, quantum_yield: None, provenance })
     }
 
-    /// Every measured dye in the tables, in the order of their names.
+    /// Every built-in dye, in order of their names.
     pub fn all() -> impl Iterator<Item = Self> {
         DYES.iter().map(Self::from)
     }
 
-    /// The measured dye of this name.
+    /// The built-in dye of this name.
     pub fn named(name: &str) -> Option<Self> {
         DYES.iter().find(|row| row.name == name).map(Self::from)
     }
@@ -60,8 +60,8 @@ impl MeasuredDye {
         })
     }
 
-    /// The dyes of a built-in set in ring order: sorted by emission hue, the last beside the first.
-    /// With them comes the name of the set in files.
+    /// The name of a built-in set in files, and its dyes in ring order: by emission hue, the last next
+    /// to the first.
     pub fn set(name: &str) -> Option<(&'static str, Vec<Self>)> {
         let stored = RENAMED.iter().find(|(new, _)| *new == name).map_or(name, |(_, old)| *old);
         let (stored, dyes) = DYE_SETS.iter().find(|(known, _)| *known == stored)?;
@@ -87,7 +87,7 @@ impl From<&DyeRow> for MeasuredDye {
     }
 }
 
-/// Sets whose word is not the name that cubes were first written with; files keep that name.
+/// Sets that were renamed, with the former names; files keep these.
 const RENAMED: [(&str, &str); 1] = [("konig8", "seed8")];
 
 #[cfg(test)]
@@ -95,7 +95,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_dye_is_what_its_samples_are() {
+    fn a_dye_from_samples_has_their_curves() {
         let known = MeasuredDye::named("ATTO_390").unwrap();
         let nm: Vec<f64> = Grid::FINE.wavelengths_nm().collect();
         let (absorption, emission) = (known.absorption.values(), known.emission.values());

@@ -10,11 +10,11 @@ pub struct Grid {
     step_nm: u32,
 }
 
-/// Why three numbers are no wavelength grid.
+/// Why a wavelength grid is rejected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GridError {
-    /// The step is zero or does not divide the range.
+    /// The range is empty, or the step is zero or does not divide it.
     #[error(
         "grid {first_nm} to {last_nm} nm in steps of {step_nm} nm, expected first < last and a step > 0 that divides the range"
     )]
@@ -38,7 +38,7 @@ impl Grid {
     ///
     /// # Errors
     ///
-    /// [`GridError::Step`] if `step_nm` is zero or does not lead from first to last.
+    /// [`GridError::Step`] unless first < last and the step is > 0 and divides the range.
     pub const fn try_new(first_nm: u32, last_nm: u32, step_nm: u32) -> Result<Self, GridError> {
         if first_nm >= last_nm || step_nm == 0 || !(last_nm - first_nm).is_multiple_of(step_nm) {
             return Err(GridError::Step { first_nm, last_nm, step_nm });
@@ -56,12 +56,12 @@ impl Grid {
         self.last_nm
     }
 
-    /// Distance of neighbors, nm.
+    /// Distance between neighbors, nm.
     pub const fn step_nm(self) -> u32 {
         self.step_nm
     }
 
-    /// How many wavelengths; at least 2.
+    /// Number of wavelengths; at least 2.
     #[expect(clippy::len_without_is_empty, reason = "a grid is never empty")]
     pub const fn len(self) -> usize {
         ((self.last_nm - self.first_nm) / self.step_nm) as usize + 1
@@ -86,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn a_step_that_misses_the_end_is_refused() {
+    fn a_step_that_does_not_divide_the_range_is_refused() {
         assert!(Grid::try_new(400, 700, 7).is_err());
         assert!(Grid::try_new(400, 700, 0).is_err());
         assert!(Grid::try_new(700, 400, 10).is_err());

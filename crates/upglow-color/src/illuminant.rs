@@ -15,7 +15,7 @@ pub struct Illuminant {
     power: Spectrum,
 }
 
-/// Why a light is not one.
+/// Why a light is rejected.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum IlluminantError {
@@ -31,25 +31,16 @@ pub enum IlluminantError {
     /// The samples are not a spectrum.
     #[error(transparent)]
     Samples(#[from] SamplesError),
-    /// A power is below zero.
-    #[error("power {found} at {wavelength_nm} nm, expected 0 or more")]
-    Negative {
-        /// Where, nm.
-        wavelength_nm: f64,
-        /// The power given.
-        found: f64,
-    },
-    /// The light is dark where the eye sees.
+    /// The light has no power at visible wavelengths.
     #[error("no power between 360 and 830 nm, expected some")]
     Invisible,
 }
 
-/// Second radiation constant of the International Temperature Scale of 1931 in which D65 was
-/// defined (1.4380e-2 m·K) and today's (1.438776877e-2 m·K): correlated color temperatures named
-/// before 1968 scale by their ratio.
+/// Today's second radiation constant (1.438776877e-2 m·K) over that of the temperature scale in which
+/// the nominal color temperatures of daylight were defined (1.4380e-2 m·K): they scale by the ratio.
 const C2_NOW_OVER_C2_THEN: f64 = 1.438_776_877 / 1.438_0;
 
-/// Where daylights and illuminant A are 100, nm.
+/// The wavelength at which daylights and illuminant A have power 100, nm.
 const REFERENCE_NM: f64 = 560.0;
 
 impl Illuminant {
@@ -60,7 +51,7 @@ impl Illuminant {
     ///
     /// # Errors
     ///
-    /// [`IlluminantError::Unknown`] lists the names there are.
+    /// [`IlluminantError::Unknown`] lists the known names.
     pub fn named(name: &str) -> Result<Self, IlluminantError> {
         match name.to_ascii_uppercase().as_str() {
             "D65" => Ok(Self::daylight("D65", 6500.0)),
@@ -77,18 +68,18 @@ impl Illuminant {
     ///
     /// # Errors
     ///
-    /// [`IlluminantError`] if the text is no spectrum or has no visible power.
+    /// [`IlluminantError`] if the text does not define a spectrum, or one without visible power.
     pub fn from_csv(name: &str, text: &str) -> Result<Self, IlluminantError> {
         let [power] = read_columns(text, ["power"], SampleRules::LIGHT)?;
         Self::from_spectrum(name, &power)
     }
 
-    /// A light from samples of its relative power: wavelengths (nm) that ascend from 300 to 830 nm in
+    /// A light from samples of its relative power: ascending wavelengths (nm) from 300 to 830 nm in
     /// steps of at most 10 nm, and a power of 0 or more for each.
     ///
     /// # Errors
     ///
-    /// [`IlluminantError`] if the samples are no spectrum or have no visible power.
+    /// [`IlluminantError`] if the samples do not define a spectrum, or one without visible power.
     pub fn from_samples(
         name: &str,
         wavelengths_nm: &[f64],
@@ -103,13 +94,10 @@ impl Illuminant {
     ///
     /// # Errors
     ///
-    /// [`IlluminantError`] if a power is negative or there is none from 360 to 830 nm.
+    /// [`IlluminantError`] if a power is negative, or all are zero from 360 to 830 nm.
     pub fn from_spectrum(name: &str, power: &Spectrum) -> Result<Self, IlluminantError> {
         let power = power.resampled(Grid::FINE);
-        let samples = Grid::FINE.wavelengths_nm().zip(power.values());
-        if let Some((wavelength_nm, &found)) = samples.into_iter().find(|(_, p)| **p < 0.0) {
-            return Err(IlluminantError::Negative { wavelength_nm, found });
-        }
+        SampleRules::LIGHT.check_curve("power", &power)?;
         let first_visible = 60;
         if power.values()[first_visible..].iter().all(|&p| p <= 0.0) {
             return Err(IlluminantError::Invisible);
@@ -117,8 +105,8 @@ impl Illuminant {
         Ok(Self { name: name.into(), power })
     }
 
-    /// A lamp with one Gaussian line, as ultraviolet LEDs have: `peak_nm`, and full width at half
-    /// maximum `fwhm_nm`, both nm; its power is 100 at the peak.
+    /// A lamp with one Gaussian line, like an ultraviolet LED: peak and full width at half maximum in
+    /// nm, power 100 at the peak.
     pub fn line(name: &str, peak_nm: f64, fwhm_nm: f64) -> Self {
         let shape = |nm: f64| (-4.0 * 2f64.ln() * ((nm - peak_nm) / fwhm_nm).powi(2)).exp();
         Self::from_fn(name, |nm| 100.0 * shape(nm))
@@ -145,7 +133,7 @@ impl Illuminant {
         Self { name: name.into(), power: power.resampled(Grid::FINE).scaled(scale) }
     }
 
-    /// Incandescent light.
+    /// CIE standard illuminant A, incandescent light.
     ///
     /// # Source
     ///
@@ -198,7 +186,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn d65_has_the_power_below_380_nm_that_the_standard_gives_it() {
+    fn the_share_of_d65_below_380_nm_is_that_of_the_standard() {
         let d65 = Illuminant::default();
         let ultraviolet: f64 = d65.power().values()[..80].iter().sum();
         let share = ultraviolet / d65.power().values().iter().sum::<f64>();
@@ -227,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn names_are_found_in_any_case_and_others_listed() {
+    fn names_are_accepted_in_any_case_and_errors_list_them() {
         assert_eq!(Illuminant::named("d50").unwrap().name(), "D50");
         assert_eq!(
             Illuminant::named("F11").unwrap_err().to_string(),
@@ -236,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn samples_and_csv_text_make_the_same_light() {
+    fn samples_and_csv_text_give_the_same_light() {
         let d50 = Illuminant::named("D50").unwrap();
         let nm: Vec<f64> = Grid::FINE.wavelengths_nm().collect();
         let sampled = Illuminant::from_samples("lamp", &nm, d50.power().values()).unwrap();
@@ -252,12 +240,15 @@ mod tests {
     }
 
     #[test]
-    fn a_light_that_takes_power_is_refused() {
+    fn negative_power_is_refused() {
         let mut values = vec![1.0; Grid::FINE.len()];
         values[100] = -0.5;
         let dark = Spectrum::new(Grid::FINE, values).unwrap();
         let refused = Illuminant::from_spectrum("dark", &dark).unwrap_err();
-        assert_eq!(refused.to_string(), "power -0.5 at 400 nm, expected 0 or more");
+        assert_eq!(
+            refused.to_string(),
+            "400 nm: -0.5 in column \"power\", expected a value of 0 or more"
+        );
     }
 
     #[test]

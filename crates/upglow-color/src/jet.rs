@@ -1,4 +1,4 @@
-//! Numbers that carry their exact partial derivatives in two variables.
+//! Automatic differentiation: numbers with their exact partial derivatives in two variables.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -10,7 +10,7 @@ pub(crate) struct Jet {
 }
 
 impl Jet {
-    /// A number that depends on nothing.
+    /// A number with derivatives of 0.
     pub(crate) const fn constant(value: f64) -> Self {
         Self { value, partials: [0.0, 0.0] }
     }
@@ -27,7 +27,7 @@ impl Jet {
         Self { value, partials: self.partials.map(|p| derivative * p) }
     }
 
-    /// Square root; its derivative at 0 is taken as 0.
+    /// Square root; its derivative at 0 is set to 0.
     pub(crate) fn sqrt(self) -> Self {
         let root = self.value.sqrt();
         self.chain(root, if root > 0.0 { 0.5 / root } else { 0.0 })

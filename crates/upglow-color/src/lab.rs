@@ -15,24 +15,24 @@ pub struct Lab {
     pub b: f64,
 }
 
-/// (6/29)³: below it the cube root gives way to a straight line.
+/// (6/29)³: at and below it the response is linear instead of a cube root.
 const LINEAR_BELOW: f64 = 216.0 / 24389.0;
 /// Slope of that line: (29/3)³ / 116.
 const LINEAR_SLOPE: f64 = 24389.0 / 27.0 / 116.0;
 
-/// The coordinates of `xyz` where `white` is the white.
+/// CIELAB of `xyz` relative to `white`.
 ///
-/// Negative tristimulus values follow the straight branch, so wide-gamut primaries have a Lab.
+/// Negative tristimulus values follow the linear branch, so wide-gamut primaries have coordinates.
 ///
 /// # Source
 ///
 /// `cie015`, section 8.2.1.
 pub fn lab_from_xyz(xyz: Xyz, white: Xyz) -> Lab {
-    let [fx, fy, fz] = [0, 1, 2].map(|k| compress(xyz.0[k] / white.0[k]).0);
-    Lab { l: 116.0 * fy - 16.0, a: 500.0 * (fx - fy), b: 200.0 * (fy - fz) }
+    lab_jacobian(xyz, white).0
 }
 
 /// The coordinates, and their derivatives `[L a b][X Y Z]`.
+#[inline]
 pub(crate) fn lab_jacobian(xyz: Xyz, white: Xyz) -> (Lab, Matrix3) {
     let f = [0, 1, 2].map(|k| compress(xyz.0[k] / white.0[k]));
     let [dx, dy, dz] = [0, 1, 2].map(|k| f[k].1 / white.0[k]);
@@ -53,14 +53,14 @@ fn compress(t: f64) -> (f64, f64) {
     }
 }
 
-/// From which the bits of a number, divided by 3, leave those of its inverse cube root within 3.5 %.
-/// Further off, three steps are too few.
+/// This minus a third of a number's bits are the bits of its inverse cube root within 3.5 %, near
+/// enough for three steps.
 const INVERSE_ROOT_BITS: u64 = 0x553e_f0ff_289d_d796;
 
 /// The cube root of a normal positive number, within two units of the last digit.
 ///
-/// Halley's steps to the inverse root need no division, and those of three channels overlap; the
-/// library's root, exact to the last bit, was a twelfth of a whole build.
+/// Halley's steps to the inverse root need no division and overlap for three channels; the standard
+/// library's root, exact to the last bit, took a twelfth of a whole build.
 fn cube_root(t: f64) -> f64 {
     let mut inverse = f64::from_bits(INVERSE_ROOT_BITS - t.to_bits() / 3);
     for _ in 0..3 {
@@ -92,10 +92,10 @@ mod tests {
     }
 
     #[test]
-    fn the_cube_root_is_the_cube_root() {
-        // Two units of the last digit; the library's own is right to half of one.
+    fn the_cube_root_is_accurate() {
+        // Two units of the last digit; the standard library's is right to half of one.
         const ROUNDING: f64 = 4.5e-16;
-        // Three octaves are what the first guess repeats after; the rest shows the ends.
+        // The first guess repeats every three octaves; the rest tests the ends.
         for step in 0..40_000 {
             let t = LINEAR_BELOW * (f64::from(step) * 2e-4).exp();
             assert!((cube_root(t) / t.cbrt() - 1.0).abs() <= ROUNDING, "{t}");

@@ -1,13 +1,13 @@
-//! The color half of upglow: from spectra to numbers that a person sees, and back to what is possible.
+//! Colorimetry: spectra, RGB, color differences, and which colors materials can reach.
 //!
-//! Everything that must be agreed before "RGB" means a color is one value, the [`Contract`]: RGB
-//! space, illuminant, observer and chromatic adaptation. A contract on a wavelength [`Grid`] is a
-//! [`Colorimetry`]: white, matrices and integration weights, computed once.
+//! A [`Contract`] defines which color an RGB triple is: RGB space, illuminant, observer and chromatic
+//! adaptation. A contract on a wavelength [`Grid`] is a [`Colorimetry`]: white, matrices and
+//! integration weights, computed once.
 //!
 //! - spectra: [`Grid`], [`Spectrum`], [`Observer`], [`Illuminant`]
 //! - color: [`Xyz`], [`LinearRgb`], [`Lab`], [`RgbSpace`], [`Adaptation`], [`Metric`]
-//! - limits: [`ColorSolid`], the colors that materials show; [`ColorSolids::standing`], what it takes
-//!   to show a color and how far it is beyond
+//! - limits: [`ColorSolid`], the colors that materials reach; [`ColorSolids::standing`], which kind of
+//!   material a color needs, and the nearest colors within reach
 //! - measured tables: [`MeasuredDye`] and the named sets of dyes
 //!
 //! Wavelengths are nm. Tristimulus values are relative: Y = 1 is the perfect diffuser.
@@ -49,7 +49,7 @@ mod standing;
 mod tables;
 mod values;
 
-/// What threads share: the state that one contract needs.
+/// Threads share these.
 const _: () = {
     const fn is_shared<T: Send + Sync>() {}
     is_shared::<Contract>();
@@ -75,7 +75,7 @@ pub use matrix::Matrix3;
 pub use metric::{Goal, Metric};
 pub use observer::{Observer, ObserverError};
 pub use rgb_space::{RgbSpace, RgbSpaceError};
-pub use samples::{Place, SampleRules, SamplesError};
+pub use samples::{SampleRules, SamplesError};
 pub use spectrum::{Spectrum, SpectrumCsvError, SpectrumError, read_columns};
 pub use srgb_curve::{srgb_decoded, srgb_encoded};
 pub use standing::{ColorSolids, Standing, StandingKind};

@@ -8,7 +8,7 @@ use std::ops::Mul;
 pub struct Matrix3(pub [[f64; 3]; 3]);
 
 impl Matrix3 {
-    /// The matrix that changes nothing.
+    /// The identity.
     pub const IDENTITY: Self = Self::diagonal([1.0, 1.0, 1.0]);
 
     /// The matrix with `d` on its diagonal.
@@ -33,7 +33,7 @@ impl Matrix3 {
             + a[2] * (b[0] * c[1] - b[1] * c[0])
     }
 
-    /// The inverse; `None` where the determinant is zero or not a number.
+    /// The inverse; `None` if the determinant is zero or not finite.
     pub fn inverse(self) -> Option<Self> {
         let m = self.0;
         let minor = |r0: usize, r1: usize, c0: usize, c1: usize| {

@@ -1,4 +1,4 @@
-//! Color difference metrics. A new one is a variant here: a distance, and residuals with derivatives.
+//! Color difference metrics. A new one is a variant with residuals and their derivatives.
 
 use crate::ciede2000::ciede2000_residuals;
 use crate::colorimetry::Colorimetry;
@@ -19,8 +19,8 @@ pub enum Metric {
     De2000,
 }
 
-/// Brings RGB distances to the scale of ΔE, in which white is 100 from black, so that one set of
-/// solver tolerances serves every metric.
+/// Scales RGB distances to ΔE, in which white is 100 from black, so that one set of solver tolerances
+/// serves every metric.
 const RGB_SCALE: f64 = 100.0;
 
 impl Metric {
@@ -29,7 +29,7 @@ impl Metric {
         norm(self.goal(colorimetry, target).residuals(sample).0)
     }
 
-    /// Everything that distances to one target share.
+    /// The distance to one target; what all such distances have in common is computed once.
     pub fn goal(self, colorimetry: &Colorimetry, target: Xyz) -> Goal {
         Goal {
             metric: self,
@@ -42,7 +42,7 @@ impl Metric {
     }
 }
 
-/// A color to be reached, and the metric that says how far another is from it.
+/// A target color and a metric for the distance to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Goal {
     metric: Metric,
@@ -58,29 +58,29 @@ impl Goal {
         self.metric
     }
 
-    /// The color to be reached.
+    /// The target.
     pub fn xyz(&self) -> Xyz {
         self.xyz
     }
 
-    /// The color to be reached, in CIELAB.
+    /// The target in CIELAB.
     pub fn lab(&self) -> Lab {
         self.lab
     }
 
-    /// The same color under another metric.
+    /// The same target with another metric.
     #[must_use]
     pub fn under(self, metric: Metric) -> Self {
         Self { metric, ..self }
     }
 
-    /// The distance of `sample`.
+    /// The distance of `sample` from the target.
     pub fn distance(&self, sample: Xyz) -> f64 {
         norm(self.residuals(sample).0)
     }
 
-    /// Three numbers whose squares add up to the square of the distance, and their derivatives by
-    /// the sample, `[residual][X Y Z]`.
+    /// Three numbers whose squares add up to the square of the distance, and their derivatives with
+    /// respect to the sample, `[residual][X Y Z]`.
     pub fn residuals(&self, sample: Xyz) -> ([f64; 3], Matrix3) {
         match self.metric {
             Metric::Rgb => {

@@ -1,4 +1,4 @@
-//! Observers: what an eye makes of light.
+//! Observers: sets of color-matching functions.
 
 use crate::grid::Grid;
 use crate::matrix::Matrix3;
@@ -6,10 +6,10 @@ use crate::samples::{SampleRules, SamplesError, curves_from_samples};
 use crate::spectrum::{Spectrum, SpectrumCsvError, read_columns};
 use crate::tables::observer::{CIE_1931_2DEG, CIE_1931_2DEG_FIRST_NM};
 
-/// A set of color-matching functions x̄, ȳ, z̄: 0 or more, zero below 360 nm and wherever nobody
-/// measured them, and none a mixture of the others.
+/// A set of color-matching functions x̄, ȳ, z̄: 0 or more, zero below 360 nm and where they were not
+/// measured, and linearly independent.
 ///
-/// Their common scale is free, as Y = 1 is always the perfect diffuser; their ratios are not.
+/// Only their ratios matter, as Y = 1 is always the perfect diffuser.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(transparent))]
 #[must_use]
@@ -20,7 +20,7 @@ pub struct Observer {
     matching: [Spectrum; 3],
 }
 
-/// Why color-matching functions are none.
+/// Why color-matching functions are rejected.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ObserverError {
@@ -30,26 +30,14 @@ pub enum ObserverError {
         /// The name given.
         found: String,
     },
-    /// The CSV text is no table of color-matching functions.
+    /// The CSV text does not define color-matching functions.
     #[error(transparent)]
     Csv(#[from] SpectrumCsvError),
-    /// The samples are no color-matching functions.
+    /// The samples do not define color-matching functions.
     #[error(transparent)]
     Samples(#[from] SamplesError),
-    /// A function is below zero, or not zero where nobody sees.
-    #[error("{column} is {found} at {wavelength_nm} nm, expected {expected}")]
-    Value {
-        /// Which function: x, y or z.
-        column: &'static str,
-        /// Where, nm.
-        wavelength_nm: f64,
-        /// Its value.
-        found: f64,
-        /// What it should be.
-        expected: &'static str,
-    },
-    /// One function is zero, or a mixture of the others: not three colors are told apart.
-    #[error("x, y and z tell no three colors apart, expected three different functions")]
+    /// One function is zero or a linear combination of the others.
+    #[error("x, y and z are linearly dependent, expected three independent functions")]
     Dependent,
 }
 
@@ -57,19 +45,19 @@ pub enum ObserverError {
 const COLUMNS: [&str; 3] = ["x", "y", "z"];
 
 /// The least volume that the three functions, scaled to unit length, must span. The CIE's 2° and 10°
-/// observers span 0.6. Smaller lets matrices through that turn rounding into color; larger might
-/// refuse an eye that somebody measured.
+/// observers span 0.6. Smaller allows matrices that amplify rounding to visible differences; larger
+/// might refuse a measured observer.
 const LEAST_VOLUME: f64 = 1e-3;
 
 impl Observer {
     /// The built-in observers.
     pub const NAMES: [&str; 1] = ["cie-1931-2deg"];
 
-    /// The built-in observer of this name, in any case; the name that files state is taken as well.
+    /// The built-in observer of this name, in any case; [`Observer::name`] is accepted too.
     ///
     /// # Errors
     ///
-    /// [`ObserverError::Unknown`] lists the names there are.
+    /// [`ObserverError::Unknown`] lists the known names.
     pub fn named(name: &str) -> Result<Self, ObserverError> {
         let known = Self::cie_1931_2deg();
         let is_known = |spelling: &str| name.eq_ignore_ascii_case(spelling);
@@ -93,23 +81,23 @@ impl Observer {
     }
 
     /// The observer in CSV text with the header `wavelength_nm,x,y,z`: at least 400 to 700 nm in steps
-    /// of at most 5 nm. It is zero beyond its lines; cells at either end of a column may be empty,
-    /// which counts as zero as well.
+    /// of at most 5 nm. It is zero beyond them; cells at either end of a column may be empty and count
+    /// as zero.
     ///
     /// # Errors
     ///
-    /// [`ObserverError`] if the text is no table, or its functions are no observer's.
+    /// [`ObserverError`] if the text does not define color-matching functions.
     pub fn from_csv(name: &str, text: &str) -> Result<Self, ObserverError> {
         Self::from_spectra(name, read_columns(text, COLUMNS, SampleRules::OBSERVER)?)
     }
 
-    /// An observer from samples: wavelengths (nm) that ascend over at least 400 to 700 nm in steps of at
-    /// most 5 nm, and for each x̄, ȳ, z̄ of 0 or more, `[wavelength][x̄ ȳ z̄]`. It is zero beyond them;
-    /// not-a-number at either end of a function counts as zero as well.
+    /// An observer from samples: ascending wavelengths (nm) over at least 400 to 700 nm in steps of at
+    /// most 5 nm, and x̄, ȳ, z̄ of 0 or more for each, `[wavelength][x̄ ȳ z̄]`. It is zero beyond them;
+    /// NaN at either end of a function counts as zero.
     ///
     /// # Errors
     ///
-    /// [`ObserverError`] if the samples are no observer's.
+    /// [`ObserverError`] if the samples do not define color-matching functions.
     pub fn from_samples(
         name: &str,
         wavelengths_nm: &[f64],
@@ -125,15 +113,15 @@ impl Observer {
     ///
     /// # Errors
     ///
-    /// [`ObserverError`] if a function is negative or not zero below 360 nm, or is zero or a mixture of
-    /// the others.
+    /// [`ObserverError`] if a function is negative or not zero below 360 nm, or if the functions are
+    /// linearly dependent.
     pub fn from_spectra(name: &str, matching: [Spectrum; 3]) -> Result<Self, ObserverError> {
         let matching = matching.map(|curve| curve.resampled(Grid::FINE));
         for (column, curve) in COLUMNS.into_iter().zip(&matching) {
-            check_values(column, curve)?;
+            SampleRules::OBSERVER.check_curve(column, curve)?;
         }
         let volume = volume(&matching);
-        // Not a number where a function is zero.
+        // NaN where a function is zero.
         if volume.is_nan() || volume < LEAST_VOLUME {
             return Err(ObserverError::Dependent);
         }
@@ -162,20 +150,8 @@ impl Default for Observer {
     }
 }
 
-fn check_values(column: &'static str, curve: &Spectrum) -> Result<(), ObserverError> {
-    for (wavelength_nm, &found) in curve.grid().wavelengths_nm().zip(curve.values()) {
-        let expected = match found {
-            _ if found < 0.0 => "0 or more",
-            _ if found > 0.0 && wavelength_nm < SampleRules::FIRST_SEEN_NM => "0 below 360 nm",
-            _ => continue,
-        };
-        return Err(ObserverError::Value { column, wavelength_nm, found, expected });
-    }
-    Ok(())
-}
-
-/// Volume of the parallelepiped of the functions scaled to unit length: 1 where none overlaps, 0 where
-/// one is a mixture of the others.
+/// Volume of the parallelepiped of the functions scaled to unit length: 1 if they do not overlap, 0 if
+/// they are linearly dependent.
 fn volume(matching: &[Spectrum; 3]) -> f64 {
     let dot = |a: &Spectrum, b: &Spectrum| -> f64 {
         a.values().iter().zip(b.values()).map(|(a, b)| a * b).sum()
@@ -199,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn the_published_table_is_the_same_from_samples_and_from_text() {
+    fn samples_and_csv_text_give_the_published_observer() {
         let (nm, rows) = table(360, 830, 1);
         let sampled = Observer::from_samples("CIE 1931 2°", &nm, &rows).unwrap();
         assert_eq!(sampled, Observer::default());
@@ -209,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn beyond_its_samples_an_observer_sees_nothing() {
+    fn an_observer_is_zero_beyond_its_samples() {
         let (nm, rows) = table(380, 780, 5);
         let short = Observer::from_samples("short", &nm, &rows).unwrap();
         let seen = short.on(Grid::FINE);
@@ -218,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn zeros_below_360_nm_stay_zeros_when_lines_are_drawn() {
+    fn functions_stay_zero_below_360_nm_when_interpolated() {
         let (nm, rows) = table(300, 830, 5);
         let from_300 = Observer::from_samples("from 300", &nm, &rows).unwrap();
         assert!(from_300.on(Grid::FINE)[..60].iter().all(|v| *v == [0.0; 3]));
@@ -226,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn names_are_found_in_any_case_and_others_listed() {
+    fn names_are_accepted_in_any_case_and_errors_list_them() {
         for name in ["CIE-1931-2deg", "cie 1931 2°"] {
             assert_eq!(Observer::named(name), Ok(Observer::default()));
         }
@@ -237,11 +213,11 @@ mod tests {
     }
 
     #[test]
-    fn each_fault_is_named() {
+    fn errors_name_the_sample_or_the_reason() {
         let message = |edit: fn(&mut Vec<f64>, &mut Vec<[f64; 3]>)| {
             let (mut nm, mut rows) = table(350, 830, 5);
             edit(&mut nm, &mut rows);
-            Observer::from_samples("eye", &nm, &rows).unwrap_err().to_string()
+            Observer::from_samples("mine", &nm, &rows).unwrap_err().to_string()
         };
         let known: [(String, &str); 7] = [
             (
@@ -250,7 +226,7 @@ mod tests {
             ),
             (
                 message(|_, rows| rows[1][2] = 0.1),
-                "sample 1: 0.1 in column \"z\" at 355 nm, expected 0 below 360 nm",
+                "sample 1: 0.1 in column \"z\", expected 0 below 360 nm",
             ),
             (
                 message(|nm, _| nm[8] = 384.0),
@@ -266,23 +242,26 @@ mod tests {
             ),
             (
                 message(|_, rows| rows.iter_mut().for_each(|v| v[2] = 0.0)),
-                "x, y and z tell no three colors apart, expected three different functions",
+                "x, y and z are linearly dependent, expected three independent functions",
             ),
             (
                 message(|_, rows| rows.iter_mut().for_each(|v| v[2] = v[0] + v[1])),
-                "x, y and z tell no three colors apart, expected three different functions",
+                "x, y and z are linearly dependent, expected three independent functions",
             ),
         ];
         for (found, expected) in known {
             assert!(found.starts_with(expected), "{found}");
         }
         let flat = Spectrum::new(Grid::FINE, vec![-1.0; Grid::FINE.len()]).unwrap();
-        let refused = Observer::from_spectra("eye", [flat.clone(), flat.clone(), flat]);
-        assert_eq!(refused.unwrap_err().to_string(), "x is -1 at 300 nm, expected 0 or more");
+        let refused = Observer::from_spectra("mine", [flat.clone(), flat.clone(), flat]);
+        assert_eq!(
+            refused.unwrap_err().to_string(),
+            "300 nm: -1 in column \"x\", expected a value of 0 or more"
+        );
     }
 
     #[test]
-    fn the_standard_observer_spans_the_volume_that_the_limit_is_measured_by() {
+    fn the_standard_observer_spans_the_documented_volume() {
         let found = volume(&Observer::default().matching);
         assert!((0.55..0.65).contains(&found), "{found}");
     }

@@ -15,7 +15,7 @@ pub struct RgbSpace {
     white: [f64; 2],
 }
 
-/// Why an RGB space cannot be had.
+/// Why an RGB space is rejected.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RgbSpaceError {
@@ -34,11 +34,11 @@ pub enum RgbSpaceError {
         /// The chromaticity given.
         found: [f64; 2],
     },
-    /// The primaries lie on a line.
+    /// The primaries lie on one line.
     #[error("the three primaries lie on one line, expected a triangle")]
     Degenerate,
     /// The white is outside the triangle of the primaries.
-    #[error("the white ({}, {}) is outside the triangle of the primaries, expected inside", .white[0], .white[1])]
+    #[error("the white ({}, {}) is outside the triangle of the primaries, expected a white inside it", .white[0], .white[1])]
     WhiteOutside {
         /// The white given.
         white: [f64; 2],
@@ -74,11 +74,11 @@ impl RgbSpace {
         SPACES.map(|(name, ..)| name)
     }
 
-    /// The built-in space of this name; case, `-`, `_`, `.` and blanks do not matter.
+    /// The built-in space of this name; case, `-`, `_`, `.` and spaces are ignored.
     ///
     /// # Errors
     ///
-    /// [`RgbSpaceError::Unknown`] lists the names there are.
+    /// [`RgbSpaceError::Unknown`] lists the known names.
     pub fn named(name: &str) -> Result<Self, RgbSpaceError> {
         let plain = |s: &str| s.to_ascii_lowercase().replace(['-', '_', '.', ' '], "");
         SPACES
@@ -88,11 +88,11 @@ impl RgbSpace {
             .ok_or_else(|| RgbSpaceError::Unknown { found: name.into() })
     }
 
-    /// A space of one's own from the chromaticities (x, y) of red, green, blue, and of white.
+    /// A space from the chromaticities (x, y) of red, green, blue, and of white.
     ///
     /// # Errors
     ///
-    /// [`RgbSpaceError`] unless the primaries make a triangle around the white.
+    /// [`RgbSpaceError`] unless the primaries form a triangle around the white.
     pub fn custom(
         name: &str,
         primaries: [[f64; 2]; 3],
@@ -127,13 +127,13 @@ impl RgbSpace {
         self.white
     }
 
-    /// The matrix that takes linear RGB to XYZ, Y = 1 for (1, 1, 1), without adaptation.
+    /// The matrix from linear RGB to XYZ without adaptation; Y = 1 for (1, 1, 1).
     pub fn xyz_from_rgb(&self) -> Matrix3 {
         let shares = Self::shares(self.primaries, self.white).expect("checked when it was made");
         directions(self.primaries) * Matrix3::diagonal(shares)
     }
 
-    /// How much of each primary makes the white; `None` where the primaries lie on a line.
+    /// Amounts of the primaries that add up to the white; `None` if the primaries lie on one line.
     fn shares(primaries: [[f64; 2]; 3], white: [f64; 2]) -> Option<[f64; 3]> {
         Some(directions(primaries).inverse()? * Xyz::from_chromaticity(white).0)
     }
@@ -185,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn spelling_does_not_matter_but_the_space_must_exist() {
+    fn names_are_found_in_any_spelling_and_unknown_ones_refused() {
         assert_eq!(RgbSpace::named("ACEScg").unwrap().name(), "acescg");
         assert_eq!(RgbSpace::named("Rec.2020").unwrap().name(), "rec2020");
         assert!(
@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn custom_primaries_must_surround_their_white() {
+    fn custom_primaries_must_form_a_triangle_around_the_white() {
         let triangle = [[0.7, 0.3], [0.2, 0.8], [0.1, 0.05]];
         assert!(RgbSpace::custom("mine", triangle, D65_WHITE).is_ok());
         let outside = RgbSpace::custom("mine", triangle, [0.7, 0.7]);

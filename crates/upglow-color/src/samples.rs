@@ -1,14 +1,11 @@
-//! Measured samples: what they must be to stand for curves, and the curves.
-
-use std::fmt;
+//! Measured samples: the rules they must follow, and the curves through them.
 
 use crate::grid::Grid;
 use crate::spectrum::Spectrum;
 
-/// What samples must be to stand for curves.
+/// What samples of a curve must be.
 ///
-/// For all of them wavelengths are nm and ascend, and samples are 0 or more. Between samples curves
-/// are straight lines.
+/// Wavelengths are in nm and ascend, and samples are 0 or more. Curves are linear between samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SampleRules {
     /// Widest step between neighbors, nm. Larger accepts samples that a peak can hide between;
@@ -18,9 +15,9 @@ pub struct SampleRules {
     covered_nm: [f64; 2],
     /// Below this wavelength, nm, every sample must be zero.
     dark_below_nm: f64,
-    /// Whether a sample may be absent at either end of a curve, which counts as zero.
-    has_blank_ends: bool,
-    /// What to say where the range is too short.
+    /// Whether samples may be absent at either end of a curve, where they count as zero.
+    pub(crate) has_blank_ends: bool,
+    /// What to suggest when the range is too short.
     range_hint: &'static str,
 }
 
@@ -41,50 +38,55 @@ impl SampleRules {
     /// measured there" and count as zero.
     pub const DYE: Self = Self {
         gap_limit_nm: 5.0,
-        covered_nm: TABLES_NM,
-        dark_below_nm: 0.0,
         has_blank_ends: true,
         range_hint: ": leave cells empty where it was not measured",
+        ..Self::LIGHT
     };
 
-    /// Color-matching functions: steps of at most 5 nm, zero beyond the samples, as their tables begin
-    /// at 360 to 400 nm and end at 700 to 830 nm. A table that is shorter would leave out light that
-    /// counts, more than a hundredth of the peak; below 360 nm nobody has measured any.
+    /// Color-matching functions: steps of at most 5 nm, and zero beyond the samples. Published tables
+    /// begin at 360 to 400 nm and end at 700 to 830 nm. A shorter table would leave out more than a
+    /// hundredth of the peak; below 360 nm there are no measurements.
     pub const OBSERVER: Self = Self {
         gap_limit_nm: 5.0,
         covered_nm: [400.0, 700.0],
-        dark_below_nm: Self::FIRST_SEEN_NM,
+        dark_below_nm: 360.0,
         has_blank_ends: true,
         range_hint: "",
     };
 
-    /// Where the CIE's tables of observers begin, nm.
-    pub(crate) const FIRST_SEEN_NM: f64 = 360.0;
-}
+    /// Checks one sample of a column, at `nm`; `place` says where it is.
+    pub(crate) fn check(
+        &self,
+        place: impl Fn() -> String,
+        column: &str,
+        nm: f64,
+        found: f64,
+    ) -> Result<(), SamplesError> {
+        let limit_nm = self.dark_below_nm;
+        let expected = match found {
+            _ if !found.is_finite() => "a finite number".into(),
+            _ if found < 0.0 => "a value of 0 or more".into(),
+            _ if found > 0.0 && nm < limit_nm => format!("0 below {limit_nm} nm"),
+            _ => return Ok(()),
+        };
+        Err(SamplesError::value(place(), column, found.to_string(), expected))
+    }
 
-/// Where a fault was found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
-    /// A line of a file, counted from 1.
-    Line(usize),
-    /// An index of an array, counted from 0.
-    Sample(usize),
-}
-
-impl fmt::Display for Place {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Line(line) => write!(f, "line {line}"),
-            Self::Sample(index) => write!(f, "sample {index}"),
-        }
+    /// Checks every sample of a curve that was not read from samples.
+    pub(crate) fn check_curve(&self, column: &str, curve: &Spectrum) -> Result<(), SamplesError> {
+        let mut samples = curve.grid().wavelengths_nm().zip(curve.values());
+        samples.try_for_each(|(nm, &found)| self.check(|| format!("{nm} nm"), column, nm, found))
     }
 }
 
-/// Why samples are no curves.
+/// Why samples do not define curves.
+///
+/// A `place` is a line of a file, counted from 1, the index of a sample, counted from 0, or a
+/// wavelength.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SamplesError {
-    /// A column has another length than the wavelengths.
+    /// A column and the wavelengths differ in length.
     #[error("{found} samples in column {column:?}, expected {expected}, one for each wavelength")]
     Length {
         /// Name of the column.
@@ -94,75 +96,31 @@ pub enum SamplesError {
         /// Wavelengths.
         expected: usize,
     },
-    /// A sample or wavelength is not a finite number.
-    #[error("{place}: {found} in column {column:?}, expected a finite number")]
-    NotFinite {
+    /// A sample or wavelength is not a number, out of range, or missing.
+    #[error("{place}: {found} in column {column:?}, expected {expected}")]
+    Value {
         /// Where.
-        place: Place,
+        place: String,
         /// Name of the column.
         column: String,
         /// What is there.
-        found: f64,
+        found: String,
+        /// What may be there.
+        expected: String,
     },
-    /// A sample is below zero.
-    #[error("{place}: {found} in column {column:?}, expected a value of 0 or more")]
-    Negative {
+    /// Wavelengths do not ascend, or ascend by too much.
+    #[error("{place}: {found_nm} nm after {previous_nm} nm, expected {expected}")]
+    Step {
         /// Where.
-        place: Place,
-        /// Name of the column.
-        column: String,
-        /// What is there.
-        found: f64,
-    },
-    /// A sample is not zero where the curve must be.
-    #[error(
-        "{place}: {found} in column {column:?} at {wavelength_nm} nm, expected 0 below {limit_nm} nm"
-    )]
-    Beyond {
-        /// Where.
-        place: Place,
-        /// Name of the column.
-        column: String,
-        /// What is there.
-        found: f64,
-        /// Its wavelength, nm.
-        wavelength_nm: f64,
-        /// Where the curve may begin, nm.
-        limit_nm: f64,
-    },
-    /// Wavelengths do not rise.
-    #[error("{place}: {found_nm} nm after {previous_nm} nm, expected ascending wavelengths")]
-    Order {
-        /// Where.
-        place: Place,
+        place: String,
         /// Wavelength there, nm.
         found_nm: f64,
         /// Wavelength before it, nm.
         previous_nm: f64,
+        /// Which steps are allowed.
+        expected: String,
     },
-    /// Two neighbors are further apart than the measurement can stand for.
-    #[error(
-        "{place}: {found_nm} nm after {previous_nm} nm leaves a gap, expected steps of at most {limit_nm} nm"
-    )]
-    Gap {
-        /// Where.
-        place: Place,
-        /// Wavelength there, nm.
-        found_nm: f64,
-        /// Wavelength before it, nm.
-        previous_nm: f64,
-        /// The widest step allowed, nm.
-        limit_nm: f64,
-    },
-    /// A sample is absent although there are some before and after it.
-    #[error("{place}: empty cell in column {column:?} between measured ones, expected a value")]
-    Hole {
-        /// Where.
-        place: Place,
-        /// Name of the column.
-        column: String,
-    },
-    /// The samples do not reach over the range asked for.
+    /// The samples do not cover the required range.
     #[error("covers {first_nm} to {last_nm} nm, expected at least {from_nm} to {to_nm} nm{hint}")]
     Range {
         /// First wavelength given, nm.
@@ -173,7 +131,7 @@ pub enum SamplesError {
         from_nm: f64,
         /// Last wavelength needed, nm.
         to_nm: f64,
-        /// What to do about it, or nothing.
+        /// A suggestion, or empty.
         hint: &'static str,
     },
     /// There are no samples.
@@ -181,14 +139,23 @@ pub enum SamplesError {
     Empty,
 }
 
-/// The curves with these samples, each column of a name and one sample for each wavelength (nm); where
-/// the rules allow blank ends, not-a-number is an absent sample.
-///
-/// The curves come back on [`Grid::FINE`].
+impl SamplesError {
+    pub(crate) fn value(
+        place: String,
+        column: &str,
+        found: String,
+        expected: impl Into<String>,
+    ) -> Self {
+        Self::Value { place, column: column.into(), found, expected: expected.into() }
+    }
+}
+
+/// The curves through samples, on [`Grid::FINE`]. Each column has a name and one sample for each
+/// wavelength (nm); where the rules allow blank ends, NaN is an absent sample.
 ///
 /// # Errors
 ///
-/// [`SamplesError`] names the index, from 0, and what was expected there.
+/// [`SamplesError`] names the index of the sample, and what was expected there.
 pub(crate) fn curves_from_samples<const N: usize>(
     wavelengths_nm: &[f64],
     columns: [(&str, &[f64]); N],
@@ -199,77 +166,59 @@ pub(crate) fn curves_from_samples<const N: usize>(
         let (column, found) = ((*column).into(), samples.len());
         return Err(SamplesError::Length { column, found, expected });
     }
-    let mut rows = Rows::new(columns.map(|(name, _)| name), rules);
-    for (i, &nm) in wavelengths_nm.iter().enumerate() {
+    let mut rows = Rows::new(columns.map(|(name, _)| name), rules, "sample");
+    for (place, &nm) in wavelengths_nm.iter().enumerate() {
         let absent = |value: &f64| rules.has_blank_ends && value.is_nan();
-        let cells = columns.map(|(_, samples)| Some(samples[i]).filter(|v| !absent(v)));
-        rows.push(Row { place: Place::Sample(i), nm, cells })?;
+        let cells = columns.map(|(_, samples)| Some(samples[place]).filter(|v| !absent(v)));
+        rows.push(Row { place, nm, cells })?;
     }
     rows.into_curves()
 }
 
-/// The samples at one wavelength; `None` where there is none.
+/// The samples at one wavelength; `None` where one is absent.
 pub(crate) struct Row<const N: usize> {
-    pub(crate) place: Place,
+    /// Number of the line or sample.
+    pub(crate) place: usize,
     pub(crate) nm: f64,
     pub(crate) cells: [Option<f64>; N],
 }
 
-/// Samples that are checked as they come.
+/// Samples that are checked as they are added.
 pub(crate) struct Rows<'n, const N: usize> {
     columns: [&'n str; N],
     rules: SampleRules,
+    /// What places number: lines or samples.
+    unit: &'static str,
     rows: Vec<Row<N>>,
 }
 
 impl<'n, const N: usize> Rows<'n, N> {
-    pub(crate) fn new(columns: [&'n str; N], rules: SampleRules) -> Self {
-        Self { columns, rules, rows: Vec::new() }
-    }
-
-    /// Whether a sample may be absent.
-    pub(crate) fn has_blank_ends(&self) -> bool {
-        self.rules.has_blank_ends
+    pub(crate) fn new(columns: [&'n str; N], rules: SampleRules, unit: &'static str) -> Self {
+        Self { columns, rules, unit, rows: Vec::new() }
     }
 
     pub(crate) fn push(&mut self, row: Row<N>) -> Result<(), SamplesError> {
-        let Row { place, nm, .. } = row;
-        self.check_number(place, "wavelength_nm", nm)?;
+        let found_nm = row.nm;
+        let place = || format!("{} {}", self.unit, row.place);
+        if !found_nm.is_finite() {
+            let (column, found) = ("wavelength_nm", found_nm.to_string());
+            return Err(SamplesError::value(place(), column, found, "a finite number"));
+        }
         for (cell, column) in row.cells.iter().zip(self.columns) {
-            if let Some(found) = *cell {
-                self.check_number(place, column, found)?;
-                self.check_sample(place, column, nm, found)?;
+            cell.map_or(Ok(()), |found| self.rules.check(place, column, found_nm, found))?;
+        }
+        if let Some(&Row { nm: previous_nm, .. }) = self.rows.last() {
+            let limit_nm = self.rules.gap_limit_nm;
+            let expected = match found_nm - previous_nm {
+                step_nm if step_nm <= 0.0 => Some("ascending wavelengths".into()),
+                step_nm if step_nm > limit_nm => Some(format!("steps of at most {limit_nm} nm")),
+                _ => None,
+            };
+            if let Some(expected) = expected {
+                return Err(SamplesError::Step { place: place(), found_nm, previous_nm, expected });
             }
         }
-        if let Some(previous) = self.rows.last() {
-            check_step(place, previous.nm, nm, self.rules.gap_limit_nm)?;
-        }
         self.rows.push(row);
-        Ok(())
-    }
-
-    fn check_number(&self, place: Place, column: &str, found: f64) -> Result<(), SamplesError> {
-        if found.is_finite() {
-            return Ok(());
-        }
-        Err(SamplesError::NotFinite { place, column: column.into(), found })
-    }
-
-    fn check_sample(
-        &self,
-        place: Place,
-        column: &str,
-        wavelength_nm: f64,
-        found: f64,
-    ) -> Result<(), SamplesError> {
-        let column = column.to_owned();
-        let limit_nm = self.rules.dark_below_nm;
-        if found < 0.0 {
-            return Err(SamplesError::Negative { place, column, found });
-        }
-        if found > 0.0 && wavelength_nm < limit_nm {
-            return Err(SamplesError::Beyond { place, column, found, wavelength_nm, limit_nm });
-        }
         Ok(())
     }
 
@@ -299,7 +248,9 @@ impl<'n, const N: usize> Rows<'n, N> {
         let last = self.rows.iter().rposition(measured).unwrap_or(0);
         match self.rows[first..=last].iter().find(|row| !measured(row)) {
             Some(row) if first < last => {
-                Err(SamplesError::Hole { place: row.place, column: column.into() })
+                let place = format!("{} {}", self.unit, row.place);
+                let expected = "a value between measured ones";
+                Err(SamplesError::value(place, column, "empty cell".into(), expected))
             }
             _ => Ok(()),
         }
@@ -321,23 +272,8 @@ impl<'n, const N: usize> Rows<'n, N> {
             let fraction = (nm - low.nm) / (high.nm - low.nm);
             low.cells[k].unwrap_or(0.0) * (1.0 - fraction) + high.cells[k].unwrap_or(0.0) * fraction
         });
-        Spectrum::new(Grid::FINE, values.collect()).expect("between finite samples all is finite")
+        Spectrum::new(Grid::FINE, values.collect()).expect("interpolated samples are finite")
     }
-}
-
-fn check_step(
-    place: Place,
-    previous_nm: f64,
-    found_nm: f64,
-    limit_nm: f64,
-) -> Result<(), SamplesError> {
-    if found_nm <= previous_nm {
-        return Err(SamplesError::Order { place, found_nm, previous_nm });
-    }
-    if found_nm - previous_nm > limit_nm {
-        return Err(SamplesError::Gap { place, found_nm, previous_nm, limit_nm });
-    }
-    Ok(())
 }
 
 #[cfg(test)]
@@ -353,7 +289,7 @@ mod tests {
     }
 
     #[test]
-    fn a_straight_line_survives_uneven_steps() {
+    fn a_linear_curve_is_reproduced_from_uneven_steps() {
         let nm: Vec<f64> = every_10_nm().into_iter().chain([831.5]).collect();
         let line = light(&nm, &nm).unwrap();
         for at in Grid::FINE.wavelengths_nm() {
@@ -362,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn each_fault_is_named_with_its_index() {
+    fn errors_name_the_index_of_the_sample() {
         let message = |at: usize, nm: f64, power: f64| {
             let mut samples = every_10_nm();
             let mut powers = vec![1.0; samples.len()];
@@ -388,7 +324,7 @@ mod tests {
             ),
             (
                 message(3, 331.0, 1.0),
-                "sample 3: 331 nm after 320 nm leaves a gap, expected steps of at most 10 nm",
+                "sample 3: 331 nm after 320 nm, expected steps of at most 10 nm",
             ),
             (message(0, 305.0, 1.0), "covers 305 to 830 nm, expected at least 300 to 830 nm"),
         ];
@@ -404,7 +340,7 @@ mod tests {
     }
 
     #[test]
-    fn a_dye_may_be_blank_at_its_ends_and_not_between() {
+    fn samples_of_a_dye_may_be_absent_only_at_the_ends() {
         let nm: Vec<f64> = (60..=166).map(|i| 5.0 * f64::from(i)).collect();
         let mut absorption = vec![0.5; nm.len()];
         absorption[0] = f64::NAN;
@@ -414,15 +350,15 @@ mod tests {
         assert_eq!(curve(&absorption).unwrap().at(300.0), 0.0);
         absorption[7] = f64::NAN;
         let hole = curve(&absorption).unwrap_err().to_string();
-        assert!(
-            hole.starts_with("sample 7: empty cell in column \"absorption\" between"),
-            "{hole}"
+        assert_eq!(
+            hole,
+            "sample 7: empty cell in column \"absorption\", expected a value between measured ones"
         );
     }
 
     proptest::proptest! {
         #[test]
-        fn no_samples_make_a_panic(
+        fn no_samples_cause_a_panic(
             rows in proptest::collection::vec(proptest::num::f64::ANY, 0..200),
             step in 0.0..10.0_f64,
         ) {

@@ -1,11 +1,10 @@
-//! Sampled curves, and the CSV files they come in.
+//! Sampled curves, and how they are read from CSV.
 
 use crate::grid::Grid;
 use crate::rounding::whole;
-use crate::samples::{Place, SampleRules, SamplesError};
-use crate::samples::{Row, Rows};
+use crate::samples::{Row, Rows, SampleRules, SamplesError};
 
-/// A curve over wavelength: samples on a grid, straight lines between them, zero outside.
+/// A curve over wavelength: samples on a grid, linear between them, zero outside.
 #[derive(Clone, Debug, PartialEq)]
 #[must_use]
 pub struct Spectrum {
@@ -13,7 +12,7 @@ pub struct Spectrum {
     values: Vec<f64>,
 }
 
-/// Why samples are no spectrum.
+/// Why samples do not define a spectrum.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SpectrumError {
@@ -106,19 +105,19 @@ impl Spectrum {
     }
 }
 
-/// Why a CSV file of curves over wavelength was refused. Lines count from 1.
+/// Why a CSV file of curves over wavelength is refused. Lines count from 1.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SpectrumCsvError {
-    /// There is no header line with the names asked for.
+    /// The header does not have the required names.
     #[error("header {found:?}, expected {expected:?}")]
     Header {
         /// The first line that is not a comment.
         found: String,
-        /// The names asked for.
+        /// The required header.
         expected: String,
     },
-    /// A line has the wrong number of cells.
+    /// A line has another number of cells than the header.
     #[error("line {line}: {found} cells, expected {expected}")]
     Cells {
         /// Line number.
@@ -128,17 +127,7 @@ pub enum SpectrumCsvError {
         /// Cells in the header.
         expected: usize,
     },
-    /// A cell is not a number.
-    #[error("line {line}: {found:?} in column {column:?}, expected a finite number")]
-    Number {
-        /// Line number.
-        line: usize,
-        /// Header of the column.
-        column: String,
-        /// What the cell holds.
-        found: String,
-    },
-    /// The numbers are no curves.
+    /// The cells do not define curves.
     #[error(transparent)]
     Samples(#[from] SamplesError),
 }
@@ -146,7 +135,7 @@ pub enum SpectrumCsvError {
 /// Reads the curves named `columns` from CSV text whose header is `wavelength_nm,<columns>`.
 ///
 /// Lines that start with `#` are comments. An empty cell is an absent sample, where the rules allow
-/// any. The curves come back on [`Grid::FINE`](crate::Grid::FINE).
+/// that. Returns the curves on [`Grid::FINE`](crate::Grid::FINE).
 ///
 /// # Errors
 ///
@@ -165,38 +154,28 @@ pub fn read_columns<const N: usize>(
             expected,
         });
     }
-    let mut rows = Rows::new(columns, rules);
+    let mut rows = Rows::new(columns, rules, "line");
     for (line, text) in lines {
-        rows.push(read_row(line, text, columns, rows.has_blank_ends())?)?;
+        let texts: Vec<&str> = text.split(',').map(str::trim).collect();
+        if texts.len() != N + 1 {
+            return Err(SpectrumCsvError::Cells { line, found: texts.len(), expected: N + 1 });
+        }
+        let nm = read_number(line, "wavelength_nm", texts[0])?;
+        let mut cells = [None; N];
+        for ((cell, text), column) in cells.iter_mut().zip(&texts[1..]).zip(columns) {
+            if !(text.is_empty() && rules.has_blank_ends) {
+                *cell = Some(read_number(line, column, text)?);
+            }
+        }
+        rows.push(Row { place: line, nm, cells })?;
     }
     Ok(rows.into_curves()?)
 }
 
-fn read_row<const N: usize>(
-    line: usize,
-    text: &str,
-    columns: [&str; N],
-    has_blanks: bool,
-) -> Result<Row<N>, SpectrumCsvError> {
-    let texts: Vec<&str> = text.split(',').map(str::trim).collect();
-    if texts.len() != N + 1 {
-        return Err(SpectrumCsvError::Cells { line, found: texts.len(), expected: N + 1 });
-    }
-    let nm = read_number(line, "wavelength_nm", texts[0])?;
-    let mut cells = [None; N];
-    for ((cell, text), column) in cells.iter_mut().zip(&texts[1..]).zip(columns) {
-        if !(text.is_empty() && has_blanks) {
-            *cell = Some(read_number(line, column, text)?);
-        }
-    }
-    Ok(Row { place: Place::Line(line), nm, cells })
-}
-
-fn read_number(line: usize, column: &str, cell: &str) -> Result<f64, SpectrumCsvError> {
-    cell.parse().ok().filter(|v: &f64| v.is_finite()).ok_or_else(|| SpectrumCsvError::Number {
-        line,
-        column: column.into(),
-        found: cell.chars().take(40).collect(),
+fn read_number(line: usize, column: &str, cell: &str) -> Result<f64, SamplesError> {
+    cell.parse().ok().filter(|v: &f64| v.is_finite()).ok_or_else(|| {
+        let found = format!("{:?}", cell.chars().take(40).collect::<String>());
+        SamplesError::value(format!("line {line}"), column, found, "a finite number")
     })
 }
 
@@ -214,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn a_straight_line_survives_any_step() {
+    fn a_linear_curve_is_reproduced_from_any_step() {
         for step in [1, 2, 5, 10] {
             let line = read(&csv(step, |nm| nm.to_string())).unwrap();
             for nm in Grid::FINE.wavelengths_nm() {
@@ -241,7 +220,7 @@ mod tests {
 
     proptest::proptest! {
         #[test]
-        fn no_text_makes_the_reader_panic(
+        fn no_text_causes_a_panic(
             cells in proptest::collection::vec("[0-9.,eE+# \\-naif]{0,12}", 0..40),
         ) {
             let text = format!("wavelength_nm,power\n{}", cells.join("\n"));
@@ -253,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn each_fault_is_named_with_its_line() {
+    fn errors_name_the_line() {
         let good = csv(5, |_| "1".into());
         let message = |text: &str| read(text).unwrap_err().to_string();
         assert_eq!(
@@ -266,7 +245,7 @@ mod tests {
         );
         assert_eq!(
             message(&good.replace("400,1\n405,1\n", "")),
-            "line 23: 410 nm after 395 nm leaves a gap, expected steps of at most 10 nm"
+            "line 23: 410 nm after 395 nm, expected steps of at most 10 nm"
         );
         assert_eq!(
             message(&good.replace("400,1\n", "400,one\n")),

@@ -1,10 +1,10 @@
 //! The transfer curve of sRGB.
 
-/// Where the curve leaves its straight beginning, linear and encoded.
+/// Where the linear segment ends, as linear and as encoded value.
 const LINEAR_KNEE: f64 = 0.003_130_8;
 const ENCODED_KNEE: f64 = 0.04045;
 
-/// What sRGB stores for linear light of 0 or more.
+/// The encoded value for linear light of 0 or more.
 ///
 /// # Source
 ///
@@ -13,7 +13,7 @@ pub fn srgb_encoded(linear: f64) -> f64 {
     if linear <= LINEAR_KNEE { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
-/// The linear light that sRGB stores as `encoded`, 0 or more.
+/// The linear light for an encoded value of 0 or more.
 ///
 /// # Source
 ///
@@ -27,7 +27,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_straight_beginning_meets_the_power() {
+    fn the_linear_segment_meets_the_power_curve() {
         // The standard's rounded constants leave 1e-8 decoded, and 12.92 times that encoded.
         const JUMP: f64 = 2e-8;
         let jump = |curve: fn(f64) -> f64, knee: f64| curve(knee + 1e-12) - curve(knee);
@@ -36,7 +36,7 @@ mod tests {
     }
 
     #[test]
-    fn one_undoes_the_other() {
+    fn decoding_is_the_inverse_of_encoding() {
         // The standard's rounded knees are 1e-8 apart.
         const KNEES: f64 = 1e-7;
         for i in 0..=1000 {

@@ -1,39 +1,38 @@
-//! Where a color stands among those that materials can show: the one test of what is reachable.
+//! Which kind of material can reach a color. The only test of reachability in the workspace.
 
 use crate::color_solid::{ColorSolid, Nearest};
 use crate::colorimetry::Colorimetry;
 use crate::values::Xyz;
 
-/// The least that it takes to show a color. The numbers of the variants are those of arrays.
+/// The kind of material that a color needs. Arrays store it as the number of the variant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum StandingKind {
-    /// Some reflectance shows it.
+    /// A reflectance reaches it.
     Reflectance = 0,
-    /// No reflectance shows it, some fluorescent material does.
+    /// No reflectance reaches it, but a fluorescent material does.
     NeedsFluorescence = 1,
-    /// No material shows it.
+    /// No material reaches it.
     Unreachable = 2,
 }
 
-/// Where a color stands, and the nearest colors that materials show.
+/// Which kind of material a color needs, and the nearest colors that materials reach.
 ///
-/// This is the limit of physics, not of a fit. The solids behind it hold materials that no one can
-/// make: they know no slope limit and no dyes, so a fit may miss a color that stands inside. And
-/// they count photons: a model with energy accounting lets absorbed light keep its energy when it
-/// moves to longer waves, more than a photon for a photon, so such a material can show colors a
-/// little outside.
+/// This is the physical limit, not that of a fit. It knows no slope limit and no dyes, so a fit may
+/// miss a color that is within reach. And it counts photons: with energy accounting, light that moves
+/// to longer wavelengths keeps its energy, which takes more than one photon for each one absorbed, so
+/// such a material can reach colors slightly beyond.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 pub struct Standing {
-    /// What it takes to show the color.
+    /// The kind of material that the color needs.
     pub kind: StandingKind,
-    /// The nearest color that a reflectance shows.
+    /// The nearest color of a reflectance.
     pub reflectance: Nearest,
-    /// The nearest color that any material shows.
+    /// The nearest color of any material.
     pub fluorescence: Nearest,
 }
 
-/// What reflectances and what fluorescent materials show under one light.
+/// The colors that materials reach under one light.
 #[derive(Clone, Debug)]
 #[must_use]
 pub struct ColorSolids {
@@ -44,8 +43,8 @@ pub struct ColorSolids {
 }
 
 impl Standing {
-    /// How far the color is from what it is beyond: from any material if it is unreachable, else
-    /// from a reflectance.
+    /// The nearest color of the solid that the color is outside of: that of all materials if it is
+    /// unreachable, else that of reflectances.
     pub fn beyond(&self) -> Nearest {
         match self.kind {
             StandingKind::Reflectance | StandingKind::NeedsFluorescence => self.reflectance,
@@ -76,7 +75,7 @@ impl ColorSolids {
         }
     }
 
-    /// What it takes to show `color`.
+    /// The kind of material that `color` needs.
     pub fn kind(&self, color: Xyz) -> StandingKind {
         if self.reflectance.contains(color) {
             StandingKind::Reflectance
@@ -87,7 +86,7 @@ impl ColorSolids {
         }
     }
 
-    /// What it takes to show `color`, and how far it is beyond.
+    /// The kind of material that `color` needs, and the nearest colors that materials reach.
     pub fn standing(&self, color: Xyz) -> Standing {
         self.standing_of_kind(color, self.kind(color))
     }
@@ -118,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn grays_black_and_white_are_reflectances() {
+    fn grays_black_and_white_need_only_a_reflectance() {
         for v in [0.0, 0.18, 1.0] {
             let standing = standing([v; 3]);
             assert_eq!(standing.kind, StandingKind::Reflectance, "{v}");
@@ -127,13 +126,13 @@ mod tests {
     }
 
     #[test]
-    fn brighter_than_white_takes_fluorescence_or_is_out_of_reach() {
+    fn colors_brighter_than_white_need_fluorescence_or_are_unreachable() {
         assert_eq!(standing([1.01; 3]).kind, StandingKind::NeedsFluorescence);
         assert_eq!(standing([9.0; 3]).kind, StandingKind::Unreachable);
     }
 
     #[test]
-    fn what_lies_outside_has_its_distance() {
+    fn colors_outside_have_a_distance() {
         let green = standing([0.0, 1.0, 0.0]);
         assert_eq!(green.kind, StandingKind::Unreachable);
         assert!(green.reflectance.distance > green.fluorescence.distance);

@@ -1,11 +1,11 @@
-//! Triples that look alike and mean different things.
+//! Vectors of three components: XYZ and linear RGB.
 
 use std::iter::Sum;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
 /// Relative CIE tristimulus values; Y = 1 is the perfect diffuser under the contract's illuminant.
 ///
-/// Any finite number is allowed: AP1's red primary has Z < 0.
+/// Components may be negative: the red primary of AP1 has Z < 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[must_use]
@@ -38,7 +38,7 @@ impl Xyz {
     }
 }
 
-/// Both are vectors: lights add up component by component.
+/// Arithmetic by component: lights add up.
 macro_rules! vector {
     ($vector:ident) => {
         impl From<[f64; 3]> for $vector {
@@ -116,7 +116,7 @@ macro_rules! vector {
             }
         }
 
-        /// From zero, in the order given.
+        /// Adds to zero in the order given.
         impl Sum for $vector {
             fn sum<I: Iterator<Item = Self>>(vectors: I) -> Self {
                 vectors.fold(Self::default(), Add::add)

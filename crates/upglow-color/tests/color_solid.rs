@@ -1,14 +1,14 @@
-//! How much of each RGB space can be shown.
+//! How much of each RGB space materials can reach.
 
 use upglow_color::{Adaptation, ColorSolid, Contract, Grid, LinearRgb, RgbSpace, Xyz};
 
-/// The expected shares are stated to 0.01 points and must be reproduced to 0.05.
+/// The expected shares are given to 0.01 percentage points and must be reproduced to 0.05.
 const POINTS: f64 = 0.05;
 
-/// Shares in percent of the 32³ grid that a reflectance, and any fluorescent material, can show,
-/// with Bradford adaptation and 1 nm sums. All but the last were also found by testing a few
-/// thousand directions; there that search gives 86.45, because missing the directions that
-/// separate a color by less than 2e-4 in XYZ counts it as shown.
+/// Shares in percent of the 32³ grid that reflectances, and any fluorescent materials, reach, with
+/// Bradford adaptation and 1 nm sums. All but the last were also found by testing a few thousand
+/// directions. For the last that test gives 86.45: it misses the directions that separate some colors
+/// by less than 2e-4 in XYZ, and counts these as reached.
 const BRADFORD: [(&str, f64, f64); 5] = [
     ("srgb", 100.0, 100.0),
     ("p3-d65", 99.22, 99.91),
@@ -17,7 +17,7 @@ const BRADFORD: [(&str, f64, f64); 5] = [
     ("aces2065-1", 51.68, 86.27),
 ];
 
-/// Colors whose verdict "outside" is proved again by a separating plane: every so many.
+/// Of the colors found outside, one in this many is also tested with a separating plane.
 const PROOF_EVERY: usize = 97;
 
 fn shares(contract: &Contract, grid: Grid) -> [f64; 2] {
@@ -39,7 +39,7 @@ fn shares(contract: &Contract, grid: Grid) -> [f64; 2] {
     inside.map(|count| 100.0 * f64::from(count) / 32768.0)
 }
 
-/// The plane through the nearest color, across the way there, has the whole solid on its far side.
+/// The plane through the nearest color, normal to the line to it, has the whole solid on its far side.
 fn assert_separated(solid: &ColorSolid, color: Xyz) {
     let nearest = solid.nearest(color);
     let n = [0, 1, 2].map(|k| color.0[k] - nearest.color.0[k]);
@@ -48,7 +48,7 @@ fn assert_separated(solid: &ColorSolid, color: Xyz) {
 }
 
 #[test]
-fn each_space_is_shown_as_far_as_stated() {
+fn the_shares_of_each_space_within_reach_are_as_documented() {
     for (name, reflectance, fluorescence) in BRADFORD {
         let contract = Contract { space: RgbSpace::named(name).unwrap(), ..Contract::default() };
         let [r, f] = shares(&contract, Grid::FINE);

@@ -1,4 +1,4 @@
-//! Our tables against the published files, where the folder that holds them is at hand.
+//! Our tables against the published files, if the folder with these is available.
 
 use std::path::PathBuf;
 
