@@ -51,6 +51,4 @@ pub use options::{FitOptions, FitOptionsError, Method};
 pub use polish::Polisher;
 pub use progress::{Progress, Unwatched, Watch};
 pub use standing_table::{Estimate, StandingTable};
-pub use verify::{
-    Check, Location, Offender, Stopped, Verdict, VerifyOptions, VerifyReport, verify,
-};
+pub use verify::{Check, Offender, Stopped, Verdict, VerifyOptions, VerifyReport, verify};

@@ -1,4 +1,4 @@
-//! Recomputes what a cube promises from its stored numbers alone.
+//! Verifies what a cube promises, from its stored numbers alone.
 
 mod finding;
 mod inspector;
@@ -12,23 +12,23 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 use upglow::{Cube, DyeCurves, Interpolation, Model};
 
-pub use report::{Check, Location, Offender, Stopped, Verdict, VerifyReport};
+pub use report::{Check, Offender, Stopped, Verdict, VerifyReport};
 pub(crate) use subjects::random_rgb;
 
 use crate::cube::Spread;
 use crate::progress::{Progress, Watch};
 use inspector::{Figure, Findings, Inspector};
-use laws::{LAWS, Law, verdict};
+use laws::{Law, verdict};
 use spectra::Spectra;
 
 /// How a cube is verified.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VerifyOptions {
-    /// Random colors between the nodes; default 1 000 000. Each takes 40 bytes and 15 µs of a core.
+    /// Number of random colors; default 1,000,000. Each takes 40 bytes, and 15 µs on one core.
     pub points: usize,
-    /// How colors between nodes get their material; default blend.
+    /// How colors between nodes are interpolated; default blend.
     pub interpolation: Interpolation,
-    /// Where the random colors start; default 0.
+    /// Seed of the random colors; default 0.
     pub seed: u64,
 }
 
@@ -38,16 +38,16 @@ impl Default for VerifyOptions {
     }
 }
 
-/// Mean CIEDE2000 that may lie between sums over 5 nm and over 1 nm. Larger means that the fit saw
-/// another material than a renderer will; smaller is not to be had from sums over 5 nm.
+/// Greatest mean CIEDE2000 between sums over 5 nm and over 1 nm. A larger one means that renderers get
+/// other colors than the fit; sums over 5 nm cannot do better.
 const GRID_LIMIT: f64 = 0.05;
 
 /// Checks every node, 1001 grays and `options.points` random colors against the laws, on all
 /// threads of the current rayon pool.
 ///
-/// Spectra are taken at every nanometer from 300 to 830 nm. The report does not depend on the
-/// number of threads. The laws of the spectra hold for any interpolation but may be broken by all
-/// but blend and none, which do not mix materials but parameters.
+/// Spectra are sampled at every nanometer from 300 to 830 nm. The report does not depend on the number
+/// of threads. The laws of spectra apply to every interpolation, but those that interpolate parameters
+/// instead of materials, which are all but blend and none, may break them.
 ///
 /// # Errors
 ///
@@ -58,7 +58,7 @@ pub fn verify(
     watch: &dyn Watch,
 ) -> Result<VerifyReport, Stopped> {
     let inspector = Inspector::new(cube, options);
-    let subjects = inspector.subjects();
+    let subjects = &inspector.subjects;
     let done = AtomicUsize::new(0);
     let pieces: Vec<Findings> = (0..subjects.pieces())
         .into_par_iter()
@@ -81,9 +81,8 @@ pub fn verify(
 
 fn checks(cube: &Cube, inspector: &Inspector<'_>, findings: Findings) -> Vec<Check> {
     let between_exact = between_exact(inspector, &findings);
-    let laws = inspector.rules().iter().zip(findings.laws);
+    let laws = inspector.rules.iter().zip(findings.laws);
     let mut checks: Vec<Check> = laws.map(|(rule, outcome)| rule.check(outcome, cube)).collect();
-    debug_assert_eq!(checks.len(), LAWS.len());
     checks.push(dye_curves(cube.model()));
     checks.extend(grid_checks(GRID_NODES, findings.grid_nodes, cube));
     checks.extend(grid_checks(GRID_POINTS, findings.grid_points, cube));
@@ -95,41 +94,33 @@ fn checks(cube: &Cube, inspector: &Inspector<'_>, findings: Findings) -> Vec<Che
 /// The share of random colors for which blend promises to be exact.
 fn between_exact(inspector: &Inspector<'_>, findings: &Findings) -> Check {
     let law = Law::Exact as usize;
-    let points = if inspector.rules()[law].applies { findings.points.values.len() } else { 0 };
+    let points = if inspector.rules[law].applies { findings.points.values.len() } else { 0 };
     let share = findings.laws[law].checked as f64 / points.max(1) as f64;
-    Check {
-        name: "points-between-exact",
-        about: "share of random colors whose nodes are all exact",
-        unit: "",
-        ..figure(share, points)
-    }
+    let texts = ["points-between-exact", "share of random colors whose nodes are all exact", ""];
+    figure(texts, share, points)
 }
 
-/// A number to report.
-fn figure(value: f64, checked: usize) -> Check {
-    Check {
-        name: "",
-        about: "",
-        verdict: verdict(None, checked, 0),
-        value,
-        limit: None,
-        unit: "CIEDE2000",
-        checked,
-        violations: 0,
-        worst: None,
-    }
+/// A number that is only reported; `texts` are name, description and unit.
+fn figure([name, about, unit]: [&'static str; 3], value: f64, checked: usize) -> Check {
+    let verdict = verdict(None, checked, 0);
+    Check { name, about, verdict, value, limit: None, unit, checked, violations: 0, worst: None }
 }
 
-/// Name and description of a mean and of a greatest value.
-type MeanAndMax = [(&'static str, &'static str); 2];
+/// Texts of a mean and of a greatest value.
+type MeanAndMax = [[&'static str; 3]; 2];
 
 const GRID_NODES: MeanAndMax = [
-    ("grid-nodes-mean", "nodes, sums over 1 nm against 5 nm, mean"),
-    ("grid-nodes-max", "nodes, sums over 1 nm against 5 nm, greatest"),
+    ["grid-nodes-mean", "nodes, sums over 1 nm against 5 nm, mean", "CIEDE2000"],
+    ["grid-nodes-max", "nodes, sums over 1 nm against 5 nm, greatest", "CIEDE2000"],
 ];
 const GRID_POINTS: MeanAndMax = [
-    ("grid-points-mean", "random colors, sums over 1 nm against 5 nm, mean"),
-    ("grid-points-max", "random colors, sums over 1 nm against 5 nm, greatest"),
+    ["grid-points-mean", "random colors, sums over 1 nm against 5 nm, mean", "CIEDE2000"],
+    ["grid-points-max", "random colors, sums over 1 nm against 5 nm, greatest", "CIEDE2000"],
+];
+const POINTS: [[&str; 3]; 3] = [
+    ["points-mean", "random colors against their targets, mean", "CIEDE2000"],
+    ["points-p95", "random colors against their targets, 95 in 100 are within", "CIEDE2000"],
+    ["points-max", "random colors against their targets, greatest", "CIEDE2000"],
 ];
 
 fn grid_checks([mean, max]: MeanAndMax, found: Figure, cube: &Cube) -> [Check; 2] {
@@ -137,72 +128,50 @@ fn grid_checks([mean, max]: MeanAndMax, found: Figure, cube: &Cube) -> [Check; 2
     let spread = Spread::of(found.values);
     let checked = found.outcome.checked;
     let violations = usize::from(spread.mean.is_nan() || spread.mean > GRID_LIMIT);
-    [
-        Check {
-            name: mean.0,
-            about: mean.1,
-            verdict: verdict(Some(GRID_LIMIT), checked, violations),
-            limit: Some(GRID_LIMIT),
-            violations,
-            worst: worst.clone(),
-            ..figure(spread.mean, checked)
-        },
-        Check { name: max.0, about: max.1, worst, ..figure(spread.max, checked) },
-    ]
+    let mean = Check {
+        verdict: verdict(Some(GRID_LIMIT), checked, violations),
+        limit: Some(GRID_LIMIT),
+        violations,
+        worst: worst.clone(),
+        ..figure(mean, spread.mean, checked)
+    };
+    [mean, Check { worst, ..figure(max, spread.max, checked) }]
 }
 
 fn point_figures(found: Figure, cube: &Cube) -> [Check; 3] {
     let worst = found.outcome.worst.map(|worst| worst.offender(cube));
     let spread = Spread::of(found.values);
-    let of = |value| figure(value, found.outcome.checked);
-    [
-        Check {
-            name: "points-mean",
-            about: "random colors against their targets, mean",
-            ..of(spread.mean)
-        },
-        Check {
-            name: "points-p95",
-            about: "random colors against their targets, 95 in 100 are within",
-            ..of(spread.p95)
-        },
-        Check {
-            name: "points-max",
-            about: "random colors against their targets, greatest",
-            worst,
-            ..of(spread.max)
-        },
-    ]
+    let [mean, p95, max] = POINTS;
+    let of = |texts, value| figure(texts, value, found.outcome.checked);
+    [of(mean, spread.mean), of(p95, spread.p95), Check { worst, ..of(max, spread.max) }]
 }
 
 /// The curves that all materials share: absorption in 0 to 1, emission of 0 or more and unit area.
 fn dye_curves(model: &Model) -> Check {
     /// Rounding of a sum of 531 numbers.
     const LIMIT: f64 = 1e-9;
+    let about = "how far absorption lies outside 0 to 1, emission below 0, its area from 1";
     let dyes = match model {
         Model::Dyes(model) => model.curves().iter().zip(model.set().dyes()).collect(),
         _ => Vec::new(),
     };
     let faults: Vec<f64> = dyes.iter().map(|(curves, _)| curve_fault(curves)).collect();
     let violations = faults.iter().filter(|&&fault| fault > LIMIT).count();
-    let (value, at) = finding::greatest(faults.iter().copied());
-    let worst = dyes.get(at).map(|(_, dye)| Offender {
-        place: Location::Dye { name: dye.name.clone() },
-        wavelength_nm: None,
-        found: value,
+    let (found, at) = finding::greatest(faults.iter().copied());
+    let worst = dyes.get(at).map(|(_, dye)| {
+        let dye = Some(dye.name.clone());
+        Offender { found, wavelength_nm: None, node: None, rgb: None, dye }
     });
     Check {
-        name: "dye-curves",
-        about: "how far absorption lies outside 0 to 1, emission below 0, its area from 1",
         verdict: verdict(Some(LIMIT), dyes.len(), violations),
         limit: Some(LIMIT),
-        unit: "",
         violations,
         worst,
-        ..figure(value.max(0.0), dyes.len())
+        ..figure(["dye-curves", about, ""], found.max(0.0), dyes.len())
     }
 }
 
+/// The greatest amount by which the curves of a dye violate that.
 fn curve_fault(curves: &DyeCurves) -> f64 {
     let absorption = curves.absorption.values().iter().map(|&a| (a - 1.0).max(-a));
     let emission = curves.emission.values().iter().map(|e| -e);
@@ -223,7 +192,7 @@ mod tests {
     const RESOLUTION: usize = 4;
     const OPTIONS: VerifyOptions =
         VerifyOptions { points: 3000, interpolation: Interpolation::Blend, seed: 5 };
-    /// Number of node `[1][0][2]`, which is not gray, and of the gray `[1][1][1]` and the white.
+    /// Indices of the node `[1][0][2]`, which is not gray, of the gray `[1][1][1]`, and of white.
     const COLORED: usize = 18;
     const GRAY: usize = 21;
     const WHITE: usize = 63;
@@ -238,7 +207,7 @@ mod tests {
         Model::Dyes(DyeModel::new(DyeSet::named("konig8").unwrap(), options).unwrap())
     }
 
-    /// A flat reflectance of the mean for grays, an edge and a little fluorescence for the rest.
+    /// A flat reflectance for grays; an edge, with some fluorescence, for other colors.
     fn material(LinearRgb([r, g, b]): LinearRgb, model: &Model) -> (Edge, Fluorescence) {
         let flat = Sigmoid::flat((r + g + b) / 3.0).to_edge(550.0);
         if r == g && g == b {
@@ -262,7 +231,7 @@ mod tests {
         (edge, fluorescence)
     }
 
-    /// A cube of such materials, with the nodes that `change` makes of them.
+    /// A cube of such materials, each changed by `change`.
     fn cube(contract: Contract, model: Model, change: impl Fn(usize, &mut Node)) -> Cube {
         let colorimetry = contract.on(Grid::FIT);
         let sums = ModelOnGrid::new(&model, &colorimetry);
@@ -278,7 +247,7 @@ mod tests {
             let (target, color) =
                 (colorimetry.xyz_from_rgb(rgb), sums.color(node.material(&model)));
             let de2000 = Metric::De2000.distance(&colorimetry, target, color);
-            // Not a number where the change made it so, which no cube stores.
+            // The change may make it NaN, which is not stored.
             node.de2000 += Node::new(edge, fluorescence, de2000.max(0.0)).de2000;
             node
         };
@@ -290,8 +259,11 @@ mod tests {
         verify(cube, &OPTIONS, &Unwatched).unwrap()
     }
 
-    /// The names of the laws that are broken in a cube with one changed node, and where.
-    fn broken(index: usize, change: impl Fn(&mut Node)) -> Vec<(&'static str, Location)> {
+    /// The names of the laws that are broken in a cube with one changed node, and the nodes.
+    fn broken(
+        index: usize,
+        change: impl Fn(&mut Node),
+    ) -> Vec<(&'static str, Option<[usize; 3]>, Option<LinearRgb>)> {
         let cube = cube(Contract::default(), dyes(), |i, node| {
             if i == index {
                 change(node);
@@ -299,11 +271,13 @@ mod tests {
         });
         let report = report(&cube);
         assert!(!report.holds());
-        report.broken().map(|check| (check.name, check.worst.clone().unwrap().place)).collect()
+        let worst = |check: &Check| check.worst.clone().unwrap();
+        let place = |check: &Check| (check.name, worst(check).node, worst(check).rgb);
+        report.broken().map(place).collect()
     }
 
     #[test]
-    fn a_valid_cube_of_each_model_keeps_every_law() {
+    fn valid_cubes_of_all_models_keep_every_law() {
         for model in [Model::Reflectance, Model::Analytic(AnalyticModel::default()), dyes()] {
             let cube = cube(Contract::default(), model, |_, _| {});
             let report = report(&cube);
@@ -317,8 +291,8 @@ mod tests {
     #[test]
     fn a_slope_above_the_limit_is_caught_and_named() {
         let found = broken(COLORED, |node| node.reflectance[2] = 0.010_001);
-        let node = Location::Node { node: [1, 0, 2], rgb: LinearRgb([2.0 / 3.0, 0.0, 1.0 / 3.0]) };
-        assert_eq!(found, [("slope", node)]);
+        let rgb = LinearRgb([2.0 / 3.0, 0.0, 1.0 / 3.0]);
+        assert_eq!(found, [("slope", Some([1, 0, 2]), Some(rgb))]);
     }
 
     #[test]
@@ -336,8 +310,8 @@ mod tests {
     #[test]
     fn a_white_that_is_not_quite_white_is_caught() {
         let found = broken(WHITE, |node| node.reflectance[1] = 1000.0);
-        let white = Location::Node { node: [3; 3], rgb: LinearRgb([1.0; 3]) };
-        assert_eq!(found, [("white-black", white)]);
+        let white = LinearRgb([1.0; 3]);
+        assert_eq!(found, [("white-black", Some([3; 3]), Some(white))]);
     }
 
     #[test]
@@ -348,7 +322,7 @@ mod tests {
     }
 
     #[test]
-    fn nodes_that_only_claim_to_be_exact_are_caught_between_them_too() {
+    fn nodes_with_a_false_difference_of_0_are_caught_and_so_are_colors_between_them() {
         let honest = cube(Contract::default(), dyes(), |_, _| {});
         let nodes = honest.nodes().iter().map(|node| Node { de2000: 0.0, ..*node }).collect();
         let (contract, fit) = (honest.contract().clone(), honest.fit().clone());
@@ -359,13 +333,13 @@ mod tests {
     }
 
     #[test]
-    fn numbers_without_bound_break_laws_but_nothing_else() {
+    fn huge_numbers_break_laws_and_cause_no_panic() {
         let found = broken(COLORED, |node| node.reflectance = [3e38, 3e38, 3e38]);
         assert_eq!([0, 1, 2].map(|i| found[i].0), ["energy", "bounds", "slope"]);
     }
 
     #[test]
-    fn without_adaptation_grays_have_no_law() {
+    fn without_adaptation_the_laws_of_grays_do_not_apply() {
         let contract = Contract { adaptation: Adaptation::None, ..Contract::default() };
         let report = report(&cube(contract, dyes(), |_, _| {}));
         for name in ["gray-flat", "gray-passive", "gray-value", "white-black"] {

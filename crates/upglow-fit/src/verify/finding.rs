@@ -1,14 +1,14 @@
-//! Counts and worst values, gathered in pieces and added up in order.
+//! Counts and worst values, collected in pieces and merged in order.
 
 use upglow::Cube;
 use upglow_color::LinearRgb;
 
-use super::{Location, Offender};
+use super::Offender;
 
 /// One of the colors that are checked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Subject {
-    /// The node of this number.
+    /// The node with this index.
     Node(usize),
     /// R = G = B between nodes.
     Gray(LinearRgb),
@@ -23,18 +23,9 @@ impl Subject {
             Self::Gray(rgb) | Self::Point(rgb) => rgb,
         }
     }
-
-    fn place(self, cube: &Cube) -> Location {
-        match self {
-            Self::Node(index) => {
-                Location::Node { node: cube.coordinates(index), rgb: cube.node_rgb(index) }
-            }
-            Self::Gray(rgb) | Self::Point(rgb) => Location::Point { rgb },
-        }
-    }
 }
 
-/// A value and where it was found.
+/// A value, and the color it was found for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Finding {
     pub(super) value: f64,
@@ -44,12 +35,16 @@ pub(super) struct Finding {
 
 impl Finding {
     pub(super) fn offender(self, cube: &Cube) -> Offender {
-        let Self { value: found, wavelength_nm, .. } = self;
-        Offender { place: self.subject.place(cube), wavelength_nm, found }
+        let Self { value: found, wavelength_nm, subject } = self;
+        let node = match subject {
+            Subject::Node(index) => Some(cube.coordinates(index)),
+            Subject::Gray(_) | Subject::Point(_) => None,
+        };
+        Offender { found, wavelength_nm, node, rgb: Some(subject.rgb(cube)), dye: None }
     }
 }
 
-/// What one law found so far.
+/// The findings for one law so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Outcome {
     pub(super) checked: usize,
@@ -58,7 +53,7 @@ pub(super) struct Outcome {
 }
 
 impl Outcome {
-    /// Takes note of a value that must not exceed `most`. What is no number exceeds everything.
+    /// Records a value that must not exceed `most`. NaN exceeds everything.
     pub(super) fn see(&mut self, mut finding: Finding, most: f64) {
         if finding.value.is_nan() {
             finding.value = f64::INFINITY;
@@ -68,7 +63,7 @@ impl Outcome {
         self.keep_worst(finding);
     }
 
-    /// Adds what a later piece found; of equally bad findings the first stays.
+    /// Merges the outcome of a later piece; the first of equally bad findings stays.
     pub(super) fn add(&mut self, later: Self) {
         self.checked += later.checked;
         self.violations += later.violations;
@@ -84,12 +79,12 @@ impl Outcome {
     }
 }
 
-/// The greater of two values; what is no number is greater than any.
+/// The greater of two values; NaN is greater than any number.
 pub(super) fn worse(a: f64, b: f64) -> f64 {
     if a > b || a.is_nan() { a } else { b }
 }
 
-/// The greatest of some values and its number; what is no number counts as infinite.
+/// The greatest of some values and its index; NaN counts as infinite.
 pub(super) fn greatest(values: impl Iterator<Item = f64>) -> (f64, usize) {
     let mut best = (f64::NEG_INFINITY, 0);
     for (i, value) in values.enumerate() {
@@ -110,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn pieces_add_up_and_the_first_of_equals_stays() {
+    fn merged_pieces_equal_the_whole_and_the_first_of_equals_stays() {
         let mut whole = Outcome::default();
         let mut parts = [Outcome::default(); 2];
         for (i, value) in [0.5, 2.0, 1.0, 2.0].into_iter().enumerate() {
@@ -125,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_breaks_every_law() {
+    fn nan_breaks_every_law() {
         let mut outcome = Outcome::default();
         outcome.see(finding(f64::NAN, 0), f64::MAX);
         assert_eq!(outcome.violations, 1);

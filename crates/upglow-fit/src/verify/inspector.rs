@@ -1,4 +1,4 @@
-//! Looks at one color after another and takes note of what it finds.
+//! Checks one color after another and records the findings.
 
 use upglow::{Bispectral, Cube, Interpolation, Mixture, ModelOnGrid};
 use upglow_color::{LinearRgb, Xyz, ciede2000};
@@ -10,44 +10,44 @@ use super::spectra::{Sampler, Spectra};
 use super::subjects::Subjects;
 use crate::cube::CubeSummary;
 
-/// Random colors that are compared with the run-time library. Fewer would miss the rarer dyes;
-/// each takes a millisecond.
+/// How many random colors are compared with the run-time library, at a millisecond each. Fewer would
+/// miss the rarer dyes.
 const LIBRARY_POINTS: usize = 64;
 
-/// Random colors for which the library is asked for every pair of wavelengths: 30 ms each.
+/// How many random colors are compared for every pair of wavelengths, at 30 ms each.
 const PAIR_POINTS: usize = 4;
 
-/// What a piece of the work found.
+/// The findings of a piece of the work.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Findings {
     /// One for each of [`LAWS`].
     pub(super) laws: [Outcome; LAWS.len()],
-    /// 1 nm against 5 nm, nodes.
+    /// Sums over 1 nm against 5 nm for nodes, CIEDE2000.
     pub(super) grid_nodes: Figure,
-    /// 1 nm against 5 nm, random colors.
+    /// Sums over 1 nm against 5 nm for random colors, CIEDE2000.
     pub(super) grid_points: Figure,
-    /// Random colors against their targets.
+    /// Random colors against their targets, CIEDE2000.
     pub(super) points: Figure,
 }
 
-/// Numbers that are reported as a whole.
+/// Numbers of which the mean, a percentile or the greatest is reported.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Figure {
     pub(super) values: Vec<f64>,
     pub(super) outcome: Outcome,
 }
 
-/// A cube and everything that all its colors share.
+/// A cube, and what the checks of all its colors have in common.
 pub(super) struct Inspector<'c> {
     cube: &'c Cube,
     interpolation: Interpolation,
-    subjects: Subjects,
+    pub(super) subjects: Subjects,
     sampler: Sampler<'c>,
-    rules: [Rule; LAWS.len()],
+    pub(super) rules: [Rule; LAWS.len()],
 }
 
 impl Findings {
-    /// Adds what a later piece found.
+    /// Merges the findings of a later piece.
     pub(super) fn add(&mut self, later: Self) {
         for (sum, outcome) in self.laws.iter_mut().zip(later.laws) {
             sum.add(outcome);
@@ -81,15 +81,7 @@ impl<'c> Inspector<'c> {
         }
     }
 
-    pub(super) fn subjects(&self) -> &Subjects {
-        &self.subjects
-    }
-
-    pub(super) fn rules(&self) -> &[Rule; LAWS.len()] {
-        &self.rules
-    }
-
-    /// Checks one piece of the work; `spectra` is scratch.
+    /// Checks one piece of the work; `spectra` is scratch space.
     pub(super) fn inspect(&self, piece: usize, spectra: &mut Spectra) -> Findings {
         let mut findings = Findings::default();
         for index in self.subjects.piece(piece) {
@@ -104,7 +96,8 @@ impl<'c> Inspector<'c> {
                 self.see_library(subject, &mixture, spectra, &mut findings);
             }
             if self.subjects.is_among_first_points(index, PAIR_POINTS) {
-                self.see_pairs(subject, &mixture, spectra, &mut findings);
+                let colors = [spectra.color(&self.sampler.fine), self.color_by_pairs(&mixture)];
+                self.see(Law::Library, subject, difference(colors), None, &mut findings);
             }
         }
         findings
@@ -119,7 +112,7 @@ impl<'c> Inspector<'c> {
         }
     }
 
-    /// Takes note of a value under a law, where the law applies.
+    /// Records a value under a law, if the law applies.
     fn see(
         &self,
         law: Law,
@@ -135,7 +128,7 @@ impl<'c> Inspector<'c> {
         }
     }
 
-    /// Energy and bounds.
+    /// The laws of energy and bounds.
     fn see_light(&self, subject: Subject, spectra: &Spectra, findings: &mut Findings) {
         let (albedo, at) = greatest(spectra.albedo());
         self.see(Law::Energy, subject, albedo, self.nm(at), findings);
@@ -148,7 +141,7 @@ impl<'c> Inspector<'c> {
         self.see(Law::Bounds, subject, excess, self.nm(at), findings);
     }
 
-    /// The steepest sample, and for a node the steepest point between samples in closed form.
+    /// The steepest sample, and for nodes the steepest point between samples, in closed form.
     fn see_slope(&self, subject: Subject, spectra: &Spectra, findings: &mut Findings) {
         let (mut steepest, at) = greatest(spectra.slope_per_nm.iter().map(|s| s.abs()));
         let mut nm = self.nm(at);
@@ -188,12 +181,12 @@ impl<'c> Inspector<'c> {
         }
     }
 
-    /// The color against its target, and by 1 nm against by 5 nm.
+    /// The color against its target, and sums over 1 nm against sums over 5 nm.
     fn see_color(&self, subject: Subject, spectra: &Spectra, findings: &mut Findings) {
         let rgb = subject.rgb(self.cube);
         let [fit, fine] = [&self.sampler.fit, &self.sampler.fine].map(|sums| &sums.colorimetry);
-        let fit_lab = fit.lab_from_xyz(self.sampler.fit_color(spectra));
-        let fine_lab = fine.lab_from_xyz(self.sampler.fine_color(spectra));
+        let fit_lab = fit.lab_from_xyz(spectra.color(&self.sampler.fit));
+        let fine_lab = fine.lab_from_xyz(spectra.color(&self.sampler.fine));
         let target = fit.lab_from_xyz(fit.xyz_from_rgb(rgb));
         let missed = ciede2000(target, fit_lab);
         let finding = |value| Finding { value, subject, wavelength_nm: None };
@@ -223,7 +216,7 @@ impl<'c> Inspector<'c> {
             .all(|&(index, weight)| weight == 0.0 || difference(index) <= CubeSummary::EXACT_DE2000)
     }
 
-    /// The same by the functions that a renderer calls, wavelength by wavelength.
+    /// The spectra and the color against the functions that renderers call, wavelength by wavelength.
     fn see_library(
         &self,
         subject: Subject,
@@ -242,23 +235,11 @@ impl<'c> Inspector<'c> {
         ));
         self.see(Law::Library, subject, error, self.nm(at), findings);
         let sums = ModelOnGrid::new(self.cube.model(), &self.sampler.fit.colorimetry);
-        let colors = (self.sampler.fit_color(spectra), mixture.color(&sums));
+        let colors = [spectra.color(&self.sampler.fit), mixture.color(&sums)];
         self.see(Law::Library, subject, difference(colors), None, findings);
     }
 
-    /// The same for the color, by the library's re-radiation between all pairs of wavelengths.
-    fn see_pairs(
-        &self,
-        subject: Subject,
-        mixture: &Mixture<'_>,
-        spectra: &Spectra,
-        findings: &mut Findings,
-    ) {
-        let colors = (self.sampler.fine_color(spectra), self.color_by_pairs(mixture));
-        self.see(Law::Library, subject, difference(colors), None, findings);
-    }
-
-    /// The color by sums over every incident and every outgoing nanometer.
+    /// The color by the library's re-radiation between all pairs of wavelengths.
     fn color_by_pairs(&self, mixture: &Mixture<'_>) -> Xyz {
         let colorimetry = &self.sampler.fine.colorimetry;
         let nm = &*self.sampler.wavelengths_nm;
@@ -281,6 +262,6 @@ impl<'c> Inspector<'c> {
 }
 
 /// The greatest difference of tristimulus values.
-fn difference((a, b): (Xyz, Xyz)) -> f64 {
+fn difference([a, b]: [Xyz; 2]) -> f64 {
     greatest((a - b).0.into_iter().map(f64::abs)).0
 }

@@ -1,4 +1,4 @@
-//! What must hold, always: one rule for each law that is checked color by color.
+//! The laws that are checked color by color.
 
 use upglow::{Cube, Interpolation};
 use upglow_color::Adaptation;
@@ -8,8 +8,8 @@ use super::finding::Outcome;
 use super::{Check, Verdict};
 use crate::cube::CubeSummary;
 
-/// A law that each color keeps or breaks by itself. A new one is a variant, an entry in
-/// [`LAWS`], its [`Rule`] and the place that sees its values.
+/// A law about single colors. A new one is a variant, an entry in [`LAWS`], its texts, its [`Rule`],
+/// and a call of `Inspector::see` with its values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Law {
     Energy,
@@ -38,24 +38,23 @@ pub(super) const LAWS: [Law; 10] = [
     Law::Library,
 ];
 
-/// Rounding of a sum of four weighted shares, whose weights add up to 1 but for rounding.
+/// Rounding of a sum of four weighted shares, whose weights add up to 1 within rounding.
 const ROUNDING: f64 = 1e-12;
 
 /// Rounding of a slope from coefficients in double precision, relative: a parabola of terms near
-/// 1e7. Nothing is left for storage in single precision, which a fit must allow for itself.
+/// 1e7. Storage in single precision gets no tolerance: fits must allow for it.
 const SLOPE_ROUNDING: f64 = 1e-9;
 
-/// What storage in single precision does to a gray, with room: its level is off by 6e-8 of itself,
-/// which moves a reflectance by 1.2e-8 at most. Larger would let a tint pass that 16 bits show;
-/// smaller leaves no room for fits that approach a gray by steps.
+/// Storage in single precision changes the level of a gray by 6e-8 of itself, and its reflectance by
+/// 1.2e-8 at most. Larger would accept a tint that 16 bits resolve; smaller leaves no room for fits
+/// that approach a gray iteratively.
 const GRAY_TOLERANCE: f64 = 1e-6;
 
-/// Half the step of single precision below 1: what it calls 1.
+/// Half the step of single precision below 1: nearer numbers are rounded to 1.
 const WHITE_TOLERANCE: f64 = 6e-8;
 
-/// The stored difference is rounded to single precision: off by 7.6e-6 at most for the greatest,
-/// which stay below 256. Larger would let differences pass that were computed before their
-/// material was rounded.
+/// Rounding of the stored difference to single precision: 7.6e-6 at most, as differences are below
+/// 256. Larger would accept differences that were computed before the material was rounded.
 const STORED_TOLERANCE: f64 = 1e-5;
 
 /// Rounding of sums of products in another order than the library's.
@@ -67,86 +66,72 @@ pub(super) struct Rule {
     name: &'static str,
     about: &'static str,
     unit: &'static str,
-    /// What values must not exceed; `None`: they are reported only.
+    /// What values must not exceed; `None` if they are only reported.
     limit: Option<f64>,
     /// By how much rounding may exceed the limit.
     tolerance: f64,
-    /// Whether the law says anything here.
+    /// Whether the law applies to this cube and interpolation.
     pub(super) applies: bool,
 }
 
 impl Law {
     pub(super) fn rule(self, cube: &Cube, options: &VerifyOptions) -> Rule {
-        let rule = |name, about, unit, limit: f64, tolerance| Rule {
-            name,
-            about,
-            unit,
-            limit: Some(limit),
-            tolerance,
-            applies: true,
-        };
-        let gray = |name, about, limit| Rule {
-            applies: cube.contract().adaptation == Adaptation::Bradford,
-            ..rule(name, about, "", limit, 0.0)
-        };
-        match self {
-            Self::Energy => rule(
-                "energy",
-                "greatest share of incident light that comes back",
-                "",
-                1.0,
-                ROUNDING,
-            ),
-            Self::Bounds => {
-                let about = "how far a reflected or re-radiated share lies outside 0 to 1";
-                rule("bounds", about, "", 0.0, ROUNDING)
-            }
+        let [name, about, unit] = self.texts();
+        let fixed = |limit, tolerance| (Some(limit), tolerance, true);
+        let gray = |limit| (Some(limit), 0.0, cube.contract().adaptation == Adaptation::Bradford);
+        let (limit, tolerance, applies) = match self {
+            Self::Energy => fixed(1.0, ROUNDING),
+            Self::Bounds => fixed(0.0, ROUNDING),
             Self::Slope => {
                 let limit = cube.fit().slope_max_per_nm;
-                let about = "steepest reflectance";
-                let tolerance = limit.unwrap_or(0.0) * SLOPE_ROUNDING;
-                Rule { limit, ..rule("slope", about, "1/nm", 0.0, tolerance) }
+                (limit, limit.unwrap_or(0.0) * SLOPE_ROUNDING, true)
             }
-            Self::GrayFlat => {
-                gray("gray-flat", "variation of a gray's reflectance", GRAY_TOLERANCE)
+            Self::GrayFlat | Self::GrayValue => gray(GRAY_TOLERANCE),
+            Self::GrayPassive => gray(0.0),
+            Self::WhiteBlack => gray(WHITE_TOLERANCE),
+            Self::Stored => fixed(STORED_TOLERANCE, 0.0),
+            Self::Exact => {
+                let is_blend = options.interpolation == Interpolation::Blend;
+                (Some(CubeSummary::EXACT_DE2000), 0.0, is_blend)
             }
-            Self::GrayPassive => gray("gray-passive", "concentration of dyes in a gray", 0.0),
-            Self::GrayValue => {
-                gray("gray-value", "a gray's reflectance against its value", GRAY_TOLERANCE)
+            Self::Library => fixed(LIBRARY_TOLERANCE, 0.0),
+        };
+        Rule { name, about, unit, limit, tolerance, applies }
+    }
+
+    /// Name, description and unit, as reports state them.
+    fn texts(self) -> [&'static str; 3] {
+        match self {
+            Self::Energy => ["energy", "greatest share of incident light that comes back", ""],
+            Self::Bounds => {
+                ["bounds", "how far a reflected or re-radiated share lies outside 0 to 1", ""]
             }
+            Self::Slope => ["slope", "steepest reflectance", "1/nm"],
+            Self::GrayFlat => ["gray-flat", "variation of a gray's reflectance", ""],
+            Self::GrayPassive => ["gray-passive", "concentration of dyes in a gray", ""],
+            Self::GrayValue => ["gray-value", "a gray's reflectance against its value", ""],
             Self::WhiteBlack => {
-                let about = "white's reflectance against 1, black's against 0";
-                gray("white-black", about, WHITE_TOLERANCE)
+                ["white-black", "white's reflectance against 1, black's against 0", ""]
             }
             Self::Stored => {
                 let about = "stored CIEDE2000 of a node against the recomputed one";
-                rule("stored-difference", about, "CIEDE2000", STORED_TOLERANCE, 0.0)
+                ["stored-difference", about, "CIEDE2000"]
             }
-            Self::Exact => Rule {
-                applies: options.interpolation == Interpolation::Blend,
-                ..rule(
-                    "exact",
-                    "colors between exact nodes against their targets",
-                    "CIEDE2000",
-                    CubeSummary::EXACT_DE2000,
-                    0.0,
-                )
-            },
-            Self::Library => {
-                let about = "these sums against the run-time library's functions";
-                rule("library", about, "", LIBRARY_TOLERANCE, 0.0)
+            Self::Exact => {
+                ["exact", "colors between exact nodes against their targets", "CIEDE2000"]
             }
+            Self::Library => ["library", "these sums against the run-time library's functions", ""],
         }
     }
 }
 
 impl Rule {
-    /// The greatest value that breaks nothing.
+    /// The greatest value that does not break the law.
     pub(super) fn most(&self) -> f64 {
         self.limit.map_or(f64::INFINITY, |limit| limit + self.tolerance)
     }
 
-    /// The report of what was found under this rule.
+    /// The report of an outcome.
     pub(super) fn check(&self, found: Outcome, cube: &Cube) -> Check {
         Check {
             name: self.name,
@@ -162,7 +147,7 @@ impl Rule {
     }
 }
 
-/// What a law's counts say.
+/// The verdict from the counts of a law.
 pub(super) fn verdict(limit: Option<f64>, checked: usize, violations: usize) -> Verdict {
     match limit {
         _ if checked == 0 => Verdict::NotApplicable,
@@ -177,7 +162,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn laws_stand_in_their_own_order() {
+    fn laws_are_listed_in_the_order_of_their_variants() {
         for (i, law) in LAWS.into_iter().enumerate() {
             assert_eq!(law as usize, i, "{law:?}");
         }

@@ -1,23 +1,23 @@
-//! What verification found.
+//! The result of verification.
 
 use std::fmt;
 
 use upglow_color::LinearRgb;
 
-/// The work was stopped by its watcher.
+/// The watcher stopped the work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("stopped")]
 pub struct Stopped;
 
-/// What was found in a cube.
+/// The result of verifying a cube.
 #[derive(Clone, Debug, PartialEq)]
 #[must_use]
 pub struct VerifyReport {
     /// Nodes checked.
     pub nodes: usize,
-    /// Random colors between the nodes checked.
+    /// Random colors checked.
     pub points: usize,
-    /// Every law and every report, in a fixed order.
+    /// All checks, in a fixed order.
     pub checks: Vec<Check>,
 }
 
@@ -38,31 +38,31 @@ impl VerifyReport {
     }
 }
 
-/// One law or report.
+/// The result for one law, or one reported number.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Check {
-    /// A short name that does not change, in words with hyphens.
+    /// A short name, in words with hyphens; it will not change.
     pub name: &'static str,
-    /// What `value` is, in one line for people.
+    /// What `value` is, in one line.
     pub about: &'static str,
-    /// Whether the law holds.
+    /// The verdict.
     pub verdict: Verdict,
-    /// The worst value found, or the figure reported.
+    /// The worst value found, or the number reported.
     pub value: f64,
-    /// What `value` must not exceed; `None` for reports.
+    /// What `value` must not exceed; `None` if it is only reported.
     pub limit: Option<f64>,
-    /// Unit of `value` and `limit`; empty for plain numbers.
+    /// Unit of `value` and `limit`; empty if dimensionless.
     pub unit: &'static str,
     /// How many nodes, colors or curves were checked.
     pub checked: usize,
-    /// How many of them break the law.
+    /// How many of these break the law.
     pub violations: usize,
-    /// Where the worst value was found; `None` where nothing was checked, or for a mean or share.
+    /// Where the worst value was found; `None` if nothing was checked, and for means and shares.
     pub worst: Option<Offender>,
 }
 
-/// What came of a check.
+/// The outcome of a check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "lowercase"))]
 pub enum Verdict {
@@ -70,7 +70,7 @@ pub enum Verdict {
     Holds,
     /// The law is broken.
     Broken,
-    /// No law, only a figure.
+    /// There is no law; the value is only reported.
     Reported,
     /// The law does not apply to this cube or interpolation, and was not checked.
     #[cfg_attr(feature = "serde", serde(rename = "not applicable"))]
@@ -88,78 +88,29 @@ impl fmt::Display for Verdict {
     }
 }
 
-/// Where a value was found.
+/// A value, and the node, color or dye it was found for.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Offender {
-    /// The node, color or dye.
-    pub place: Location,
-    /// The wavelength, nm, where the value belongs to one.
-    pub wavelength_nm: Option<f64>,
     /// The value.
     pub found: f64,
-}
-
-/// What was checked.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Location {
-    /// A node.
-    Node {
-        /// Blue, green and red index.
-        node: [usize; 3],
-        /// Its color.
-        rgb: LinearRgb,
-    },
-    /// A color between nodes.
-    Point {
-        /// The color.
-        rgb: LinearRgb,
-    },
-    /// A dye of the cube's ring.
-    Dye {
-        /// Its name.
-        name: String,
-    },
-}
-
-impl fmt::Display for Location {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Node { node: [blue, green, red], rgb: LinearRgb([r, g, b]) } => {
-                write!(f, "node [{blue}][{green}][{red}], RGB ({r}, {g}, {b})")
-            }
-            Self::Point { rgb: LinearRgb([r, g, b]) } => write!(f, "RGB ({r}, {g}, {b})"),
-            Self::Dye { name } => write!(f, "dye {name}"),
-        }
-    }
+    /// The wavelength, nm, for values of one wavelength.
+    pub wavelength_nm: Option<f64>,
+    /// Blue, green and red index, for a node.
+    pub node: Option<[usize; 3]>,
+    /// The color, for nodes and the colors between them.
+    pub rgb: Option<LinearRgb>,
+    /// The name, for a dye of the cube.
+    pub dye: Option<String>,
 }
 
 impl fmt::Display for Offender {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} at {}", self.found, self.place)?;
-        match self.wavelength_nm {
-            Some(nm) => write!(f, ", {nm} nm"),
-            None => Ok(()),
-        }
-    }
-}
-
-/// All that any offender has; `null` for what this one has not.
-#[cfg(feature = "serde")]
-impl serde::Serialize for Offender {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        use serde::ser::SerializeStruct as _;
-
-        let (node, rgb, dye) = match &self.place {
-            Location::Node { node, rgb } => (Some(node), Some(rgb.0), None),
-            Location::Point { rgb } => (None, Some(rgb.0), None),
-            Location::Dye { name } => (None, None, Some(name)),
-        };
-        let mut offender = serializer.serialize_struct("Offender", 5)?;
-        offender.serialize_field("found", &self.found)?;
-        offender.serialize_field("wavelength_nm", &self.wavelength_nm)?;
-        offender.serialize_field("node", &node)?;
-        offender.serialize_field("rgb", &rgb)?;
-        offender.serialize_field("dye", &dye)?;
-        offender.end()
+        let node = self.node.map(|[blue, green, red]| format!("node [{blue}][{green}][{red}]"));
+        let rgb = self.rgb.map(|LinearRgb([r, g, b])| format!("RGB ({r}, {g}, {b})"));
+        let dye = self.dye.as_ref().map(|name| format!("dye {name}"));
+        let wavelength = self.wavelength_nm.map(|nm| format!("{nm} nm"));
+        let parts: Vec<String> = [node, rgb, dye, wavelength].into_iter().flatten().collect();
+        write!(f, "{} at {}", self.found, parts.join(", "))
     }
 }

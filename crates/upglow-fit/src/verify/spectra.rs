@@ -1,7 +1,7 @@
 //! The spectra of a mixture at every nanometer, and its colors by sums over them.
 //!
-//! Written over whole arrays, apart from the run-time library that evaluates one wavelength at a
-//! time: the two are compared for some colors of every run.
+//! This works on whole arrays and shares no formula with the run-time library, which evaluates one
+//! wavelength at a time. Each run compares the two for some colors.
 
 use upglow::{Accounting, DyeCurves, DyeModel, Fluorescence, Material, Mixing, Model, Sigmoid};
 use upglow_color::{Colorimetry, Contract, Grid, Xyz};
@@ -12,7 +12,7 @@ const FINE: usize = Grid::FINE.len();
 /// One number for each wavelength of [`Grid::FINE`].
 pub(super) type Samples = [f64; FINE];
 
-/// A contract and a model, sampled once.
+/// A contract and a model on both grids.
 pub(super) struct Sampler<'m> {
     model: &'m Model,
     /// Sums over 1 nm.
@@ -23,10 +23,12 @@ pub(super) struct Sampler<'m> {
     dyes: Vec<SampledDye>,
 }
 
-/// A colorimetry and which samples of [`Grid::FINE`] it adds up.
+/// Sums over every `stride`-th sample of [`Grid::FINE`].
 pub(super) struct StridedSums {
     pub(super) colorimetry: Colorimetry,
     stride: usize,
+    /// Which entry of a [`Stimulus`] it makes.
+    index: usize,
 }
 
 struct SampledDye {
@@ -38,31 +40,27 @@ struct SampledDye {
     mean_emission_nm: f64,
 }
 
-/// One color by each kind of sum.
-#[derive(Clone, Copy, Debug, Default)]
-struct Stimulus {
-    fine: Xyz,
-    fit: Xyz,
-}
+/// A color by sums over 1 nm and over 5 nm.
+type Stimulus = [Xyz; 2];
 
-/// What a mixture does with light, at every wavelength, and the colors that it emits.
+/// The spectra of a mixture, and the color of its emission under the contract's light.
 pub(super) struct Spectra {
-    /// Reflectance r without what fluorescence absorbs: the mean of the parts' sigmoids.
+    /// The mean of the parts' sigmoids, the reflectance r if nothing fluoresced.
     pub(super) reflectance: Box<Samples>,
     /// dr/dλ, 1/nm.
     pub(super) slope_per_nm: Box<Samples>,
     /// Share of light reflected at its own wavelength, (1 − c·a)·r.
     pub(super) reflected: Box<Samples>,
-    /// Share of light given back at other wavelengths.
+    /// Share of light re-radiated at other wavelengths.
     pub(super) returned: Box<Samples>,
     emitted: Stimulus,
-    /// Of the part at hand: its sigmoid, what it absorbs in all, and in one lobe.
+    /// Scratch space for one part: its sigmoid, what it absorbs in all, and what one lobe absorbs.
     sigmoid: Box<Samples>,
     absorbed: Box<Samples>,
     lobe_absorbed: Box<Samples>,
 }
 
-/// Light that one absorber takes and one emitter gives back.
+/// One absorber and one emitter.
 struct Lobe {
     absorber: Absorber,
     strength: f64,
@@ -88,23 +86,23 @@ fn sampled(values: impl IntoIterator<Item = f64>) -> Box<Samples> {
 }
 
 impl StridedSums {
-    fn new(contract: &Contract, grid: Grid) -> Self {
+    fn new(contract: &Contract, grid: Grid, index: usize) -> Self {
         let stride = (grid.step_nm() / Grid::FINE.step_nm()) as usize;
-        Self { colorimetry: contract.on(grid), stride }
+        Self { colorimetry: contract.on(grid), stride, index }
     }
 
-    /// The color of light reflected in these shares.
+    /// The color of a reflectance.
     fn reflected(&self, share: &Samples) -> Xyz {
         self.colorimetry.xyz_from_reflectance(share.iter().step_by(self.stride).copied())
     }
 
-    /// Energy absorbed in these shares.
+    /// The energy of these shares of the incident light.
     fn energy(&self, share: &Samples) -> f64 {
         let light = self.colorimetry.irradiance();
         share.iter().step_by(self.stride).zip(light).map(|(s, e)| s * e).sum()
     }
 
-    /// The color of one unit of energy, spread as these samples are; `unit` is their sum.
+    /// The color of one unit of energy with this spectrum; `unit` is the sum of the samples.
     fn emission(&self, samples: &[f64], unit: f64) -> Xyz {
         let bands = samples.iter().step_by(self.stride).zip(self.colorimetry.matching());
         bands.map(|(e, m)| *e * Xyz(*m)).sum::<Xyz>() / unit
@@ -115,13 +113,13 @@ impl SampledDye {
     fn new(curves: &DyeCurves, fine: &StridedSums, fit: &StridedSums) -> Self {
         let emission = curves.emission.values();
         let by = |sums: &StridedSums| {
-            // The sum over a coarse grid is not quite the area: a dye gives back no more than that.
+            // The sum over the grid instead of the exact area, so that a dye emits exactly its yield.
             let area = emission.iter().step_by(sums.stride).sum();
             sums.emission(emission, area)
         };
         Self {
             absorption: sampled(curves.absorption.values().iter().copied()),
-            stimulus: Stimulus { fine: by(fine), fit: by(fit) },
+            stimulus: [fine, fit].map(by),
             quantum_yield: curves.quantum_yield,
             mean_emission_nm: curves.mean_emission_nm,
         }
@@ -131,7 +129,7 @@ impl SampledDye {
 impl<'m> Sampler<'m> {
     pub(super) fn new(contract: &Contract, model: &'m Model) -> Self {
         let (fine, fit) =
-            (StridedSums::new(contract, Grid::FINE), StridedSums::new(contract, Grid::FIT));
+            (StridedSums::new(contract, Grid::FINE, 0), StridedSums::new(contract, Grid::FIT, 1));
         let dyes = match model {
             Model::Dyes(dyes) => {
                 dyes.curves().iter().map(|c| SampledDye::new(c, &fine, &fit)).collect()
@@ -141,7 +139,7 @@ impl<'m> Sampler<'m> {
         Self { model, fine, fit, wavelengths_nm: sampled(Grid::FINE.wavelengths_nm()), dyes }
     }
 
-    /// Fills `spectra` with those of the mixture of `parts`.
+    /// Computes the spectra of the mixture of `parts`.
     pub(super) fn sample(
         &self,
         parts: impl Iterator<Item = (f64, Material)>,
@@ -158,16 +156,6 @@ impl<'m> Sampler<'m> {
         }
     }
 
-    /// The color of sampled spectra by sums over 1 nm.
-    pub(super) fn fine_color(&self, spectra: &Spectra) -> Xyz {
-        self.fine.reflected(&spectra.reflected) + spectra.emitted.fine
-    }
-
-    /// The color of sampled spectra by sums over 5 nm.
-    pub(super) fn fit_color(&self, spectra: &Spectra) -> Xyz {
-        self.fit.reflected(&spectra.reflected) + spectra.emitted.fit
-    }
-
     fn add_lobe(&self, weight: f64, lobe: &Lobe, spectra: &mut Spectra) {
         self.fill_absorbed(lobe, &mut spectra.lobe_absorbed);
         for i in 0..FINE {
@@ -177,10 +165,10 @@ impl<'m> Sampler<'m> {
             spectra.lobe_absorbed[i] = given;
             spectra.returned[i] += weight * given;
         }
-        let [fine, fit] =
-            [&self.fine, &self.fit].map(|sums| weight * sums.energy(&spectra.lobe_absorbed));
-        spectra.emitted.fine += fine * lobe.stimulus.fine;
-        spectra.emitted.fit += fit * lobe.stimulus.fit;
+        for sums in [&self.fine, &self.fit] {
+            let energy = weight * sums.energy(&spectra.lobe_absorbed);
+            spectra.emitted[sums.index] += energy * lobe.stimulus[sums.index];
+        }
     }
 
     fn fill_absorbed(&self, lobe: &Lobe, absorbed: &mut Samples) {
@@ -201,7 +189,7 @@ impl<'m> Sampler<'m> {
         }
     }
 
-    /// The one or two lobes of a fluorescence; none where nothing fluoresces.
+    /// The lobes of a fluorescence, up to two.
     fn lobes(&self, fluorescence: Fluorescence) -> [Option<Lobe>; 2] {
         match (fluorescence, self.model) {
             (Fluorescence::Dyes { first, weight, concentration }, Model::Dyes(model)) => {
@@ -227,17 +215,13 @@ impl<'m> Sampler<'m> {
         let second = model.partner(first);
         let (a, b) = (&self.dyes[first], &self.dyes[second]);
         let mix = |x: f64, y: f64| (1.0 - weight) * x + weight * y;
-        let mix_colors = |x: Xyz, y: Xyz| (1.0 - weight) * x + weight * y;
         Lobe {
             absorber: Absorber::Dyes { first, second, weight },
             strength,
             quantum_yield: mix(a.quantum_yield, b.quantum_yield),
             accounting: model.options().accounting,
             mean_emission_nm: mix(a.mean_emission_nm, b.mean_emission_nm),
-            stimulus: Stimulus {
-                fine: mix_colors(a.stimulus.fine, b.stimulus.fine),
-                fit: mix_colors(a.stimulus.fit, b.stimulus.fit),
-            },
+            stimulus: [0, 1].map(|i| (1.0 - weight) * a.stimulus[i] + weight * b.stimulus[i]),
         }
     }
 
@@ -263,13 +247,13 @@ impl<'m> Sampler<'m> {
             quantum_yield: model.quantum_yield(),
             accounting: model.accounting(),
             mean_emission_nm: peak_nm,
-            stimulus: Stimulus { fine: by(&self.fine), fit: by(&self.fit) },
+            stimulus: [&self.fine, &self.fit].map(by),
         })
     }
 }
 
 impl Lobe {
-    /// The share of absorbed energy that may come out.
+    /// The share of absorbed energy that can be re-radiated at a quantum yield of 1.
     fn share(&self, lambda_nm: f64) -> f64 {
         match self.accounting {
             Accounting::Energy => 1.0,
@@ -324,7 +308,12 @@ impl Spectra {
         }
     }
 
-    /// Share of light of each wavelength that comes back at any.
+    /// The color under the contract's light.
+    pub(super) fn color(&self, sums: &StridedSums) -> Xyz {
+        sums.reflected(&self.reflected) + self.emitted[sums.index]
+    }
+
+    /// Share of the light of each wavelength that is reflected or re-radiated.
     pub(super) fn albedo(&self) -> impl Iterator<Item = f64> + '_ {
         self.reflected.iter().zip(self.returned.iter()).map(|(a, b)| a + b)
     }
@@ -384,8 +373,8 @@ mod tests {
                 assert!((spectra.reflected[i] - mixture.reflectance(nm)).abs() < ROUNDING);
                 assert!((albedo - mixture.albedo(nm)).abs() < ROUNDING, "{nm} nm");
             }
-            let colors = [sampler.fine_color(&spectra), sampler.fit_color(&spectra)];
-            for (color, sums) in colors.into_iter().zip([&sampler.fine, &sampler.fit]) {
+            for sums in [&sampler.fine, &sampler.fit] {
+                let color = spectra.color(sums);
                 let expected = mixture.color(&ModelOnGrid::new(&model, &sums.colorimetry));
                 for k in 0..3 {
                     let error = (color.0[k] - expected.0[k]).abs();

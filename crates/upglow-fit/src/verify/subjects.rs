@@ -1,4 +1,4 @@
-//! Which colors are checked: every node, a row of grays, random colors.
+//! Which colors are checked: all nodes, a series of grays, and random colors.
 
 use std::ops::Range;
 
@@ -8,15 +8,15 @@ use upglow_color::LinearRgb;
 use super::VerifyOptions;
 use super::finding::Subject;
 
-/// Grays from black to white that are checked between the nodes. Fewer could miss a cell of the
-/// largest cube, which has 255 along the diagonal; more find nothing new within a cell.
+/// How many grays from black to white are checked. Fewer could miss a cell of the largest cube, which
+/// has 255 along the diagonal; more find nothing new within a cell.
 const GRAYS: usize = 1001;
 
-/// Colors per piece of work. Larger pieces leave threads idle at the end, smaller ones cost more
-/// in passing them around. The report does not depend on it.
+/// Colors per piece of work. With larger pieces threads idle at the end; smaller ones cost more
+/// overhead. The report does not depend on it.
 const PIECE: usize = 1024;
 
-/// All the colors to check, in one row.
+/// All colors to check, numbered from 0.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Subjects {
     nodes: usize,
@@ -60,13 +60,13 @@ impl Subjects {
     }
 }
 
-/// Random color number `index` of a seed, each component in 0..1.
+/// Random color number `index` for a seed, each component in 0..1.
 pub(crate) fn random_rgb(seed: u64, index: usize) -> LinearRgb {
     let first = (index as u64).wrapping_mul(3);
     LinearRgb([1, 2, 3].map(|k| unit(split_mix(seed, first.wrapping_add(k)))))
 }
 
-/// Number `step` of the `SplitMix64` sequence of a seed: any of them without those before it.
+/// Number `step` of the `SplitMix64` sequence of a seed, computed without those before it.
 ///
 /// # Source
 ///
@@ -108,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn any_number_of_points_is_a_number() {
+    fn the_number_of_points_may_be_any() {
         let subjects = Subjects { nodes: 8, points: usize::MAX, seed: u64::MAX };
         let last = subjects.piece(subjects.pieces() - 1);
         assert_eq!(last.end, usize::MAX);
