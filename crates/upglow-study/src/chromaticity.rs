@@ -1,26 +1,26 @@
-//! What a chromaticity diagram has before any color is in it.
+//! The spectral locus, primaries and white of a chromaticity diagram.
 
 use upglow_color::{Contract, Grid, Xyz};
 
-/// Locus, primaries and white of a contract, in the diagram of its observer.
+/// The spectral locus of a contract's observer, and the contract's primaries and white.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChromaticityDiagram {
-    /// Wavelengths, nm, and chromaticities (x, y) of the lights of one wavelength, by 1 nm.
+    /// Wavelengths in nm, in steps of 1 nm, and chromaticities (x, y) of monochromatic light.
     pub locus: Vec<(u32, [f64; 2])>,
-    /// Chromaticities of the space's red, green and blue, as the space gives them.
+    /// Chromaticities of red, green and blue, as the RGB space defines them.
     pub primaries: [[f64; 2]; 3],
     /// Chromaticity of the perfect diffuser under the contract's light.
     pub white: [f64; 2],
 }
 
-/// The locus is taken between these wavelengths, nm: beyond, its ends only pile up.
+/// First and last wavelength of the locus, nm: beyond them its points hardly move.
 const LOCUS_NM: [u32; 2] = [390, 700];
 
 impl ChromaticityDiagram {
-    /// The diagram of a contract. Wavelengths that the observer does not see are left out.
+    /// The diagram of a contract, without the wavelengths that its observer does not see.
     pub fn of(contract: &Contract) -> Self {
         let [first, last] = LOCUS_NM;
-        let grid = Grid::try_new(first, last, 1).expect("it rises");
+        let grid = Grid::try_new(first, last, 1).expect("the wavelengths ascend");
         let colors = contract.observer.on(grid);
         let points = (first..).zip(colors).map(|(nm, xyz)| Some((nm, Xyz(xyz).chromaticity()?)));
         let white = contract.on(Grid::FINE).white().chromaticity();

@@ -3,25 +3,24 @@
 use upglow::DyeModel;
 use upglow_color::{Grid, Observer, Spectrum, Xyz};
 
-/// A dye as a model uses it.
+/// A dye with its spectra as the model uses them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DyeSpectra<'m> {
     /// The dye's name.
     pub name: &'m str,
-    /// Share of the light that is absorbed at full concentration, 0..=1.
+    /// Fraction of the light that is absorbed at full concentration, 0..=1.
     pub absorption: &'m Spectrum,
     /// Emission of unit area, 1/nm.
     pub emission: &'m Spectrum,
-    /// Where it absorbs most, nm.
+    /// Wavelength of the greatest absorption, nm.
     pub absorption_peak_nm: f64,
-    /// Where it emits most, nm.
+    /// Wavelength of the greatest emission, nm.
     pub emission_peak_nm: f64,
-    /// Chromaticity of its emission; `None` where the observer does not see it.
+    /// Chromaticity of the emission alone; `None` if the observer does not see it.
     pub emission_xy: Option<[f64; 2]>,
 }
 
-/// The dyes of a model in ring order, as `observer` sees their emissions, without the light that the
-/// material reflects.
+/// The dyes of a model in ring order, with the chromaticities of their emissions for `observer`.
 pub fn dye_spectra<'m>(model: &'m DyeModel, observer: &Observer) -> Vec<DyeSpectra<'m>> {
     let matching = observer.on(Grid::FINE);
     let dyes = model.set().dyes().iter().zip(model.curves());

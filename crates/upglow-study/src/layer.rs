@@ -1,37 +1,37 @@
-//! Layers of a cube, at one blue, as the colors that its materials really have.
+//! Layers of a cube at one blue: the colors of its materials and their errors.
 
 use rayon::prelude::*;
 use upglow::{Cube, Interpolation, LookupError, Mixture, ModelOnGrid};
 use upglow_color::{Grid, LinearRgb, Metric};
 use upglow_fit::CubeSummary;
 
-/// Colors over red and green at one blue: of the nodes, or of a denser grid between them.
+/// Colors of materials over red and green at one blue: those of the nodes, or of a denser grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layer {
     /// Blue, 0..=1.
     pub blue: f64,
-    /// Points along red and green; point i stands for i / (side − 1).
+    /// Number of points along red and along green; point i is at i / (side − 1).
     pub side: usize,
-    /// What is shown, `[green][red]`; any finite numbers.
+    /// Linear RGB of the materials, `[green][red]`; may lie outside 0..=1.
     pub colors: Vec<LinearRgb>,
-    /// CIEDE2000 from what is asked for, `[green][red]`.
+    /// CIEDE2000 between each material and the color it should have, `[green][red]`.
     pub de2000: Vec<f64>,
-    /// Whether all nodes that take part match their colors within 0.01 CIEDE2000, `[green][red]`.
+    /// Whether all nodes around the point match their colors within 0.01 CIEDE2000, `[green][red]`.
     pub has_exact_nodes: Vec<bool>,
 }
 
 impl Layer {
-    /// The node of an axis nearest to a value, 0..=1.
+    /// The index of the node nearest to a value in 0..=1, along an axis.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "the value is in 0..=1, and rounding is what it is for"
+        reason = "the value is in 0..=1 and rounded"
     )]
     pub fn nearest_node(resolution: usize, value: f64) -> usize {
         (value * (resolution - 1) as f64).round() as usize
     }
 
-    /// The nodes of layer `blue_index`.
+    /// The layer of nodes with this index along blue.
     ///
     /// # Panics
     ///
@@ -45,11 +45,11 @@ impl Layer {
         })
     }
 
-    /// A grid of `side`² colors at `blue`, 0..=1, whatever nodes there are.
+    /// A grid of `side`² interpolated materials at `blue`, 0..=1.
     ///
     /// # Panics
     ///
-    /// If `blue` is no number from 0 to 1, or `side` is below 2.
+    /// If `blue` is outside 0..=1, or `side` is below 2.
     pub fn between_nodes(
         cube: &Cube,
         blue: f64,
@@ -110,11 +110,11 @@ mod tests {
         build_cube(&contract, &model, FitOptions::default(), 4, &Unwatched).unwrap()
     }
 
-    /// Single precision of what the cube stores.
+    /// The cube stores single precision.
     const STORED_TOL: f64 = 1e-4;
 
     #[test]
-    fn a_layer_of_nodes_repeats_the_differences_that_the_cube_stores() {
+    fn a_layer_of_nodes_has_the_differences_that_the_cube_stores() {
         let cube = cube();
         let layer = Layer::of_nodes(&cube, 2);
         for (i, found) in layer.de2000.iter().enumerate() {
@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn a_grid_of_the_nodes_alone_is_the_layer_of_nodes() {
+    fn a_grid_that_meets_a_node_has_its_color() {
         let cube = cube();
         let nodes = Layer::of_nodes(&cube, 0);
         let dense = Layer::between_nodes(&cube, 0.0, 7, Interpolation::Blend);

@@ -1,7 +1,7 @@
 //! The numbers behind the figures of König et al. 2020, for any cube or contract.
 //!
-//! What a figure shows is plain data: [`Layer`], [`standing_layer`], [`dye_spectra`] … The program
-//! `upglow-study`, in the same package, draws the paper's figures from it and measures the paper's
+//! The data of a figure is a plain value: [`Layer`], [`standing_layer`], [`dye_spectra`] … The program
+//! `upglow-study`, in the same package, draws the figures from these values and measures the paper's
 //! claims.
 
 mod chromaticity;

@@ -1,9 +1,9 @@
-//! What lies between two reflectances.
+//! Interpolation between two reflectances.
 
 use upglow::{FeatureError, Features, Sigmoid};
 use upglow_color::{Grid, choices};
 
-/// What is mixed linearly to make a reflectance between two.
+/// What is interpolated linearly between two reflectances.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Mixing {
     /// The three coefficients of the polynomial.
@@ -23,12 +23,12 @@ choices!(
 );
 
 impl Mixing {
-    /// The reflectance with the share `weight`, 0..=1, of the second end, on [`Grid::FINE`].
+    /// The interpolated reflectance on [`Grid::FINE`]; `weight`, 0..=1, is that of the second end.
     ///
     /// # Errors
     ///
-    /// [`FeatureError`] if an end has no reflectance, or the mixture has none: features of slopes of
-    /// opposite sign pass zero.
+    /// [`FeatureError`] if the features of an end, or interpolated ones, describe no reflectance:
+    /// between slopes of opposite sign the slope passes zero.
     pub fn sample(self, ends: [Features; 2], weight: f64) -> Result<Vec<f64>, FeatureError> {
         let mix = |a: f64, b: f64| (1.0 - weight) * a + weight * b;
         let [from, to] = [ends[0].to_sigmoid()?, ends[1].to_sigmoid()?];
@@ -64,20 +64,20 @@ mod tests {
     ];
 
     #[test]
-    fn all_ways_agree_at_both_ends() {
+    fn all_kinds_agree_at_both_ends() {
         for (weight, end) in [(0.0, ENDS[0]), (1.0, ENDS[1])] {
             let expected = end.to_sigmoid().unwrap();
-            for way in [Mixing::Coefficients, Mixing::Spectra, Mixing::Features] {
-                let found = way.sample(ENDS, weight).unwrap();
+            for mixing in [Mixing::Coefficients, Mixing::Spectra, Mixing::Features] {
+                let found = mixing.sample(ENDS, weight).unwrap();
                 for (nm, value) in Grid::FINE.wavelengths_nm().zip(found) {
-                    assert!((value - expected.at(nm)).abs() < 1e-12, "{way:?} at {nm} nm");
+                    assert!((value - expected.at(nm)).abs() < 1e-12, "{mixing:?} at {nm} nm");
                 }
             }
         }
     }
 
     #[test]
-    fn features_of_opposite_slopes_have_nothing_halfway() {
+    fn features_of_opposite_slopes_have_no_mean() {
         let [from, to] = ENDS;
         let opposite = Features { slope_per_nm: -from.slope_per_nm, ..to };
         assert!(Mixing::Features.sample([from, opposite], 0.5).is_err());

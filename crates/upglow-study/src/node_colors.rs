@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use upglow::{Cube, ModelOnGrid};
 use upglow_color::{Colorimetry, Xyz};
 
-/// The color that the material of each node has, `[blue][green][red]`, with the sums of `colorimetry`.
+/// The color of each node's material under `colorimetry`, `[blue][green][red]`.
 pub fn node_colors(cube: &Cube, colorimetry: &Colorimetry) -> Vec<Xyz> {
     let sums = ModelOnGrid::new(cube.model(), colorimetry);
     (0..cube.nodes().len())

@@ -1,10 +1,10 @@
-//! What any material can show of an RGB space.
+//! Which colors of an RGB space any material can match.
 
 use rayon::prelude::*;
 use upglow_color::{ColorSolids, Contract, Grid, LinearRgb, StandingKind};
 
-/// What it takes to show `side`² colors at one blue, `[green][red]`: point i of an axis stands for
-/// i / (side − 1). By a search for each color, which is exact.
+/// Whether `side`² colors at one blue can be matched by a reflectance, only with fluorescence, or not
+/// at all, `[green][red]`; point i of an axis is at i / (side − 1). Each color is searched for exactly.
 pub fn standing_layer(contract: &Contract, blue: f64, side: usize) -> Vec<StandingKind> {
     let colorimetry = contract.on(Grid::FIT);
     let solids = ColorSolids::new(&colorimetry);
@@ -23,7 +23,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn layers_start_with_black_and_run_along_red_then_green() {
+    fn layers_run_along_red_first() {
         use StandingKind::{NeedsFluorescence, Reflectance, Unreachable};
         let magentas = standing_layer(&Contract::default(), 0.9, 11);
         assert_eq!(magentas[9], NeedsFluorescence);

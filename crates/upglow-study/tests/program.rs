@@ -6,20 +6,20 @@ use std::process::Output;
 
 use assert_cmd::Command;
 
-/// Runs the program in a folder with these words, split at blanks.
+/// Runs the program in a folder with these arguments, separated by blanks.
 fn run(folder: &Path, words: &str) -> Output {
     let mut program = Command::new(assert_cmd::cargo::cargo_bin!("upglow-study"));
     program.args(words.split_whitespace()).current_dir(folder).output().unwrap()
 }
 
-/// What the program prints, which must do its work without a word on standard error.
+/// Standard output of a run that must succeed and print nothing to standard error.
 fn done(folder: &Path, words: &str) -> String {
     let Output { status, stdout, stderr } = run(folder, words);
     assert!(status.success() && stderr.is_empty(), "{words}");
     String::from_utf8(stdout).unwrap()
 }
 
-/// The line of a program that refuses with this status, and writes nothing.
+/// Standard error of a run that must fail with this status and write no file.
 fn refused(folder: &Path, expected: i32, words: &str) -> String {
     let Output { status, stdout, stderr } = run(folder, words);
     assert_eq!((status.code(), &stdout[..]), (Some(expected), &b""[..]), "{words}");
@@ -32,7 +32,7 @@ fn read(folder: &Path, name: &str) -> Vec<u8> {
 }
 
 #[test]
-fn a_figure_is_written_as_svg_and_png_and_is_the_same_twice() {
+fn a_figure_is_written_as_svg_and_png_and_is_reproducible() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     for out in ["a", "b"] {
@@ -46,15 +46,18 @@ fn a_figure_is_written_as_svg_and_png_and_is_the_same_twice() {
 }
 
 #[test]
-fn a_figure_that_is_not_there_is_refused() {
+fn a_figure_of_an_unknown_number_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    let refused = refused(folder, 2, "figures --only 11 --resolution 4");
-    assert_eq!(refused, "upglow-study: --only: figure 11, expected 1 to 10\n");
+    for number in [0, 11] {
+        let refused = refused(folder, 2, &format!("figures --only {number} --resolution 4"));
+        let expected = "expected a whole number from 1 to 10";
+        assert_eq!(refused, format!("upglow-study: --only: {number}, {expected}\n"));
+    }
 }
 
 #[test]
-fn the_report_is_the_same_on_paper_and_on_the_screen() {
+fn the_report_is_the_same_in_the_file_and_on_standard_output() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let printed = done(folder, "reproduce --resolution 5 -o report.md");
@@ -63,7 +66,7 @@ fn the_report_is_the_same_on_paper_and_on_the_screen() {
 }
 
 #[test]
-fn the_claims_are_printed_as_one_json_document_too() {
+fn the_claims_are_printed_as_one_json_document() {
     let folder = tempfile::tempdir().unwrap();
     let printed = done(folder.path(), "reproduce --resolution 4 --json");
     assert!(printed.starts_with(r#"{"resolution":4,"claims":[{"id":"metric-time","section":"#));

@@ -1,11 +1,11 @@
-//! SVG as text: elements with attributes, and the words, points and colors in them.
+//! Writes SVG as text: elements with attributes, escaped text, lists of points, colors.
 //!
-//! What is drawn, and to which digit, is the business of each program; this crate writes it. The same
-//! calls give the same bytes on every machine.
+//! Each program decides what it draws and how it formats numbers. The same calls give the same bytes
+//! on every machine.
 
 use std::fmt::{Display, Write as _};
 
-/// An element in the making. Its attributes keep the order in which they are added.
+/// An element to which attributes are added; they keep the order of the calls.
 ///
 /// ```
 /// use upglow_svg::{Element, escape};
@@ -26,13 +26,13 @@ impl Element {
         Self { name, start: format!("<{name}") }
     }
 
-    /// Adds an attribute; the value is written as it is.
+    /// Adds an attribute; the value is not escaped.
     pub fn with(mut self, attribute: &str, value: impl Display) -> Self {
-        write!(self.start, " {attribute}=\"{value}\"").expect("a string takes any text");
+        write!(self.start, " {attribute}=\"{value}\"").expect("writing to a string cannot fail");
         self
     }
 
-    /// Adds an attribute where there is a value.
+    /// Adds an attribute if there is a value.
     pub fn with_some(self, attribute: &str, value: Option<impl Display>) -> Self {
         match value {
             Some(value) => self.with(attribute, value),
@@ -40,7 +40,7 @@ impl Element {
         }
     }
 
-    /// Adds several attributes, each a name and a value.
+    /// Adds attributes, each a name and a value.
     pub fn with_all<V: Display>(
         self,
         attributes: impl IntoIterator<Item = (&'static str, V)>,
@@ -48,7 +48,7 @@ impl Element {
         attributes.into_iter().fold(self, |element, (name, value)| element.with(name, value))
     }
 
-    /// The element with nothing in it.
+    /// The element without content.
     #[must_use]
     pub fn empty(self) -> String {
         self.start + "/>"
@@ -62,31 +62,27 @@ impl Element {
     }
 }
 
-/// Text as XML holds it; control characters, which it cannot hold, are left out.
+/// Escapes text for XML, without control characters, which XML cannot represent.
 #[must_use]
 pub fn escape(text: &str) -> String {
     let plain: String = text.chars().filter(|c| !c.is_control()).collect();
     plain.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
-/// Points for a polyline or a polygon, each coordinate as `number` writes it.
+/// The points of a polyline or polygon, each coordinate formatted by `number`.
 pub fn points(at: impl IntoIterator<Item = [f64; 2]>, number: impl Fn(f64) -> String) -> String {
     let point = |[x, y]: [f64; 2]| format!("{},{}", number(x), number(y));
     at.into_iter().map(point).collect::<Vec<_>>().join(" ")
 }
 
-/// The nearest whole number in 0..=255.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "clamped before; rounding is what it is for"
-)]
+/// The nearest integer in 0..=255.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped and rounded")]
 #[must_use]
 pub fn byte(value: f64) -> u8 {
     value.clamp(0.0, 255.0).round() as u8
 }
 
-/// A color as SVG writes it.
+/// An sRGB color as `#rrggbb`.
 #[must_use]
 pub fn hex([r, g, b]: [u8; 3]) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
@@ -97,18 +93,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn attributes_keep_their_order_and_absent_ones_leave_nothing() {
+    fn attributes_keep_their_order_and_absent_ones_are_left_out() {
         let line = Element::new("line").with("y1", 2).with_some("fill", None::<&str>);
         assert_eq!(line.with_all([("x1", 1)]).empty(), r#"<line y1="2" x1="1"/>"#);
     }
 
     #[test]
-    fn text_from_files_stays_text() {
+    fn text_is_escaped() {
         assert_eq!(escape("<script>&\u{7}"), "&lt;script&gt;&amp;");
     }
 
     #[test]
-    fn colors_are_rounded_and_cut_off() {
+    fn colors_are_rounded_and_clamped() {
         assert_eq!([-1.0, 117.6, 300.0].map(byte), [0, 118, 255]);
         assert_eq!(hex([118, 0, 255]), "#7600ff");
     }

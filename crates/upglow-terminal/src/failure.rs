@@ -1,4 +1,4 @@
-//! How the program ends without its result: one line on standard error and an exit status.
+//! Failures of a program: one line on standard error and an exit status.
 
 use std::error::Error;
 use std::fmt::Display;
@@ -9,54 +9,53 @@ use std::process::ExitCode;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use upglow_fit::Stopped;
 
-/// Why a command has no result. A line says where something is wrong, what was found there and what
-/// was expected.
+/// Why a command failed. The line names the place of the fault, what was found and what was expected.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Failure {
-    /// What was given is not what it should be: a file, a color, a law that a cube breaks.
+    /// A file, a color or a cube is invalid.
     Input(String),
-    /// The command line asks for something that does not exist or does not fit together.
+    /// An option has an invalid value, or options contradict each other.
     Usage(String),
     /// The user stopped the work.
     Stopped,
-    /// Nobody reads standard output any more.
+    /// The reader of standard output has closed it.
     OutputClosed,
 }
 
-/// An error of a library, or text.
+/// An error of a library, or a text.
 type Cause = Box<dyn Error + Send + Sync>;
 
 const INPUT_STATUS: u8 = 1;
 const USAGE_STATUS: u8 = 2;
-/// What shells report for a program that was ended by Ctrl-C.
+/// What shells report for a program ended by Ctrl-C.
 const STOPPED_STATUS: u8 = 130;
 
 impl Failure {
-    /// Something is wrong with the file at `path`.
+    /// The file at `path` is invalid.
     #[must_use]
     pub fn file(path: &Path, cause: impl Into<Cause>) -> Self {
         Self::input(path.display(), cause)
     }
 
-    /// The system refuses to read or write the file at `path`.
+    /// The file at `path` cannot be read or written.
     #[must_use]
     pub fn system(path: &Path, error: &io::Error, expected: impl Display) -> Self {
         Self::file(path, format!("{}, expected {expected}", io_message(error)))
     }
 
-    /// Something is wrong with what `place` names.
+    /// The input named by `place` is invalid.
     #[must_use]
     pub fn input(place: impl Display, cause: impl Into<Cause>) -> Self {
         Self::Input(format!("{place}: {}", chain(&*cause.into())))
     }
 
-    /// Something is wrong with an option.
+    /// The value of an option is invalid.
     #[must_use]
     pub fn option(option: &str, cause: impl Into<Cause>) -> Self {
         Self::Usage(format!("{option}: {}", chain(&*cause.into())))
     }
 
-    /// The same line with more at its end.
+    /// Appends text to the line.
     #[must_use]
     pub fn with(mut self, more: &str) -> Self {
         if let Self::Input(line) | Self::Usage(line) = &mut self {
@@ -65,7 +64,7 @@ impl Failure {
         self
     }
 
-    /// Prints the line, and gives the status to exit with.
+    /// Prints the line and returns the exit status.
     pub(crate) fn report(&self, program: &str) -> ExitCode {
         let (line, status) = match self {
             Self::Input(line) => (line.as_str(), INPUT_STATUS),
@@ -84,7 +83,7 @@ impl From<Stopped> for Failure {
     }
 }
 
-/// An error and its causes, outermost first.
+/// The texts of an error and its causes, outermost first, without repetitions.
 fn chain(error: &(dyn Error + 'static)) -> String {
     let causes = std::iter::successors(Some(error), |&error| error.source());
     let texts = causes.map(|cause| match cause.downcast_ref() {
@@ -97,7 +96,7 @@ fn chain(error: &(dyn Error + 'static)) -> String {
     texts.reduce(join).unwrap_or_default()
 }
 
-/// What the system says about a file, without its error number.
+/// The system's message about a file, without its error number.
 fn io_message(error: &io::Error) -> String {
     match error.kind() {
         io::ErrorKind::NotFound => "no such file or folder".into(),
@@ -115,19 +114,19 @@ fn io_message(error: &io::Error) -> String {
     }
 }
 
-/// Prints what clap found as one line, or the help that was asked for.
+/// Prints clap's error as one line, or the requested help.
 pub(crate) fn report_usage(program: &str, error: &clap::Error) -> ExitCode {
     let kind = error.kind();
     let help = ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand;
     if !error.use_stderr() || kind == help {
-        // Help that cannot be printed is nothing to report.
+        // If help cannot be printed, there is nothing else to report.
         let _ = error.print();
         return if kind == help { ExitCode::from(USAGE_STATUS) } else { ExitCode::SUCCESS };
     }
     Failure::Usage(usage_line(error)).report(program)
 }
 
-/// The option and what is wrong with its value; for other faults the first paragraph and the tips.
+/// The option and the cause of its error; for other errors the first paragraph and the tips.
 fn usage_line(error: &clap::Error) -> String {
     if let (Some(ContextValue::String(option)), Some(cause)) =
         (error.get(ContextKind::InvalidArg), error.source())
@@ -143,7 +142,7 @@ fn usage_line(error: &clap::Error) -> String {
     joined.trim_start_matches("error: ").replace(" tip: ", "; tip: ")
 }
 
-/// File names may hold line breaks; the message stays one line all the same.
+/// Keeps a message with line breaks in file names on one line.
 fn one_line(text: &str) -> String {
     text.replace(['\n', '\r'], " ")
 }
@@ -153,7 +152,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_system_is_quoted_without_its_error_number() {
+    fn messages_of_the_system_have_no_error_number() {
         let error = io::Error::from_raw_os_error(21);
         assert_eq!(io_message(&error), "a folder");
         let error = io::Error::other("Strange thing (os error 999)");
@@ -161,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_names_its_place() {
+    fn a_message_starts_with_the_file() {
         let failure = Failure::file(Path::new("a.cube"), "x, expected y");
         assert_eq!(failure, Failure::Input("a.cube: x, expected y".into()));
     }

@@ -7,12 +7,12 @@ use upglow::{Aside, AsideError, write_whole};
 use crate::failure::Failure;
 use crate::output::size;
 
-/// Reads text, which `expected` names.
+/// Reads a text file; `expected` says in errors what it should be.
 pub fn read_text(path: &Path, expected: &str) -> Result<String, Failure> {
     std::fs::read_to_string(path).map_err(|error| Failure::system(path, &error, expected))
 }
 
-/// Checks that a file can be written at `path`, before long work starts for it.
+/// Checks that a file can be written at `path`, before long work starts.
 pub fn check_output(path: &Path) -> Result<(), Failure> {
     let kind = match path.metadata() {
         Ok(found) if found.is_file() => None,
@@ -39,7 +39,7 @@ pub fn check_output(path: &Path) -> Result<(), Failure> {
     }
 }
 
-/// Writes a file that appears whole or not at all.
+/// Writes a file, as a whole or not at all.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     write_whole(path, bytes).map_err(|error| match error {
         AsideError::Io(error) => {
@@ -50,7 +50,7 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     })
 }
 
-/// Makes a folder and those above it, where they are not there.
+/// Creates a folder, and missing ones above it.
 pub fn make_folder(path: &Path) -> Result<(), Failure> {
     std::fs::create_dir_all(path)
         .map_err(|error| Failure::system(path, &error, "a folder to write in"))
@@ -65,7 +65,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn checking_an_output_leaves_nothing() {
+    fn checking_an_output_creates_no_file() {
         let folder = tempfile::tempdir().unwrap();
         assert_eq!(check_output(&folder.path().join("cube")), Ok(()));
         assert!(check_output(folder.path()).is_err());

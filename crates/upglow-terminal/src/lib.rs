@@ -1,8 +1,8 @@
-//! What the programs `upglow` and `upglow-study` share: how they read the command line,
-//! end, print, show progress and write files.
+//! What the programs `upglow` and `upglow-study` share: reading the command line, printing reports,
+//! showing progress, writing files, reporting errors.
 //!
 //! Data goes to standard output; progress, warnings and errors go to standard error. A program that
-//! has no result prints one line and exits with a status of its own for each kind of [`Failure`].
+//! fails prints one line and exits with a status that depends on the kind of [`Failure`].
 
 mod failure;
 pub mod files;
@@ -19,9 +19,9 @@ pub use output::{Console, Report, size};
 pub use progress::{Bar, Threads, check_stopped};
 pub use values::{count, in_range, number, parsed, word};
 
-/// Reads the command line, does what it asks for, and gives the status to exit with.
+/// Reads the command line, runs `work` with it, and returns the exit status.
 ///
-/// Lines on standard error start with the name that `Args` gives to its command.
+/// Error messages start with the name that `Args` gives to its command.
 pub fn run<Args: Parser>(work: impl FnOnce(Args) -> Result<(), Failure>) -> ExitCode {
     let command = Args::command();
     let program = command.get_name();

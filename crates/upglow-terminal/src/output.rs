@@ -1,4 +1,4 @@
-//! Results on standard output: text for people, or JSON.
+//! Reports on standard output, as text or JSON.
 
 use std::cell::Cell;
 use std::io::{self, Write as _};
@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::failure::Failure;
 
-/// What a command has found.
+/// The result of a command.
 pub trait Report: Serialize {
     /// The text for people, with a final line break.
     fn text(&self) -> String;
@@ -23,17 +23,17 @@ pub struct Console {
     /// Do not show progress
     #[arg(long, short, global = true)]
     pub(crate) quiet: bool,
-    /// Whether a report was printed.
+    /// Whether a report has been printed.
     #[arg(skip)]
     printed: Cell<bool>,
 }
 
 impl Console {
-    /// Prints a report on standard output; text for people after a blank line, if it is not the first.
+    /// Prints a report on standard output; blank lines separate reports that are text.
     ///
     /// # Errors
     ///
-    /// [`Failure`] if standard output takes no more.
+    /// [`Failure`] if standard output cannot be written.
     pub fn print(&self, report: &impl Report) -> Result<(), Failure> {
         let text = if self.json {
             serde_json::to_string(report).map(|json| json + "\n").map_err(io::Error::from)
@@ -50,7 +50,7 @@ impl Console {
     }
 }
 
-/// A number of bytes for people: 1.23 MB.
+/// A number of bytes with a unit: 1.23 MB.
 pub fn size(bytes: u64) -> String {
     let bytes = bytes as f64;
     match bytes {

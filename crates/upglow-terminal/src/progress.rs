@@ -1,4 +1,4 @@
-//! Work on many threads, with progress on standard error, and Ctrl-C.
+//! Work on several threads, with progress on standard error and a handler of Ctrl-C.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -10,13 +10,13 @@ use crate::failure::Failure;
 use crate::output::Console;
 use crate::values::in_range;
 
-/// Redrawing more often than this many times a second costs time and shows nothing more.
+/// Redrawing more often than this costs time without being visible.
 const REDRAWS_PER_S: u8 = 10;
 
-/// Whether Ctrl-C or termination was asked for.
+/// Whether the user has pressed Ctrl-C, or the system has asked the program to terminate.
 static STOPPED: AtomicBool = AtomicBool::new(false);
 
-/// More threads than this are a typing error: they would take the machine's memory.
+/// More threads than this are probably a typing error, and would exhaust the memory.
 const MOST_THREADS: usize = 1024;
 
 /// The option for the number of threads.
@@ -27,9 +27,9 @@ pub struct Threads {
     threads: Option<usize>,
 }
 
-/// A bar for the work in hand, with the time left; nothing where standard error is not a terminal.
+/// A progress bar with the remaining time; invisible if standard error is not a terminal.
 ///
-/// Ctrl-C and termination end the work at its next step, so that no unfinished file stays behind.
+/// Ctrl-C and termination stop the work at its next step, so that no unfinished file stays behind.
 #[derive(Debug)]
 pub struct Bar {
     bar: ProgressBar,
@@ -37,11 +37,11 @@ pub struct Bar {
 }
 
 impl Console {
-    /// Does work on so many threads, under a bar unless the user wants quiet.
+    /// Runs work on a pool of threads, and shows its progress unless `--quiet` was given.
     ///
     /// # Errors
     ///
-    /// [`Failure::Input`] if the system does not give so many threads.
+    /// [`Failure::Input`] if the threads cannot be started.
     pub fn work<T: Send>(
         &self,
         threads: Threads,
@@ -69,8 +69,8 @@ impl Bar {
         let bar = ProgressBar::with_draw_target(Some(1), target)
             .with_style(style())
             .with_message("starting");
-        // Without a handler Ctrl-C ends the program at once; files appear whole or not at all then
-        // too. A second piece of work finds the handler of the first.
+        // Setting the handler fails for every call but the first. Without a handler Ctrl-C ends the
+        // program at once, which leaves no unfinished file either.
         let _ = ctrlc::set_handler(|| STOPPED.store(true, Ordering::Relaxed));
         Self { bar, stage: Mutex::new("") }
     }
@@ -81,7 +81,7 @@ fn style() -> ProgressStyle {
         .unwrap_or_else(|_| ProgressStyle::default_bar())
 }
 
-/// Refuses to go on after Ctrl-C.
+/// Returns an error after Ctrl-C.
 ///
 /// # Errors
 ///
@@ -104,7 +104,7 @@ impl Watch for Bar {
                 self.bar.set_length(total as u64);
             }
         }
-        // Threads report out of order; the bar goes one way.
+        // Threads report out of order; the bar never moves back.
         if done as u64 > self.bar.position() {
             self.bar.set_position(done as u64);
         }

@@ -1,4 +1,4 @@
-//! How values of options are read: one parser for each kind of value.
+//! Parsers of the values of options.
 
 use std::ffi::OsStr;
 use std::fmt::Display;
@@ -9,11 +9,11 @@ use clap::builder::{PossibleValue, TypedValueParser};
 use clap::{Arg, Command};
 use upglow_color::Choice;
 
-/// Reads a word of a [`Choice`]; the help lists the words.
+/// Parses the words of a [`Choice`], which clap lists in the help.
 #[derive(Clone, Copy, Debug)]
 struct Word<T>(PhantomData<T>);
 
-/// A parser of the words of an option.
+/// A parser of the words of a [`Choice`].
 #[must_use]
 pub fn word<T: Choice + Send + Sync>() -> impl TypedValueParser<Value = T> {
     Word(PhantomData)
@@ -37,25 +37,25 @@ impl<T: Choice + Send + Sync> TypedValueParser for Word<T> {
     }
 }
 
-/// Reads a number.
+/// Parses a number.
 ///
 /// # Errors
 ///
-/// What was found and expected, in one line.
+/// A text that says what was found and what was expected.
 pub fn number(text: &str) -> Result<f64, String> {
     parsed(text, "a number")
 }
 
-/// Reads a whole number of 0 or more.
+/// Parses a whole number of 0 or more.
 ///
 /// # Errors
 ///
-/// What was found and expected, in one line.
+/// A text that says what was found and what was expected.
 pub fn count<T: FromStr>(text: &str) -> Result<T, String> {
     parsed(text, "a whole number of 0 or more")
 }
 
-/// Reads a whole number from the first to the second limit.
+/// A parser of whole numbers from `least` to `most`.
 pub fn in_range(
     [least, most]: [usize; 2],
 ) -> impl Fn(&str) -> Result<usize, String> + Clone + Send + Sync + 'static {
@@ -68,11 +68,11 @@ pub fn in_range(
     }
 }
 
-/// Any value, or what was expected.
+/// Parses a value; `expected` describes it in the error.
 ///
 /// # Errors
 ///
-/// What was found and expected, in one line.
+/// A text that says what was found and what was expected.
 pub fn parsed<T: FromStr>(text: &str, expected: impl Display) -> Result<T, String> {
     text.trim().parse().map_err(|_| format!("{text:?}, expected {expected}"))
 }

@@ -1,4 +1,4 @@
-//! What was typed.
+//! The command line: each option is one field here, with its default and help.
 
 use std::path::PathBuf;
 
@@ -6,7 +6,7 @@ use clap::{Parser, Subcommand};
 use upglow::Cube;
 use upglow_terminal::{Console, Threads, in_range, word};
 
-use crate::figures::Display;
+use crate::figures::{Display, LAST_FIGURE};
 
 /// Computes the figures and claims of König et al. 2020.
 #[derive(Clone, Debug, Parser)]
@@ -20,9 +20,9 @@ pub(crate) struct Args {
 
 #[derive(Clone, Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Draw the eight figures of the paper from real computation, and two more; takes minutes
+    /// Compute and draw the eight figures of the paper and two of our own; takes minutes
     Figures(FiguresArgs),
-    /// Measure the claims of the paper and print a report in Markdown; takes minutes
+    /// Measure the claims of the paper and print a Markdown report; takes minutes
     Reproduce(ReproduceArgs),
 }
 
@@ -31,10 +31,10 @@ pub(crate) struct FiguresArgs {
     /// Folder for the SVG and PNG files; created if it does not exist
     #[arg(long, default_value = "figures", value_name = "FOLDER")]
     pub(crate) out: PathBuf,
-    /// Draw one figure only: 1 to 8 are the paper's, 9 and 10 our own
-    #[arg(long, value_name = "N")]
-    pub(crate) only: Option<u32>,
-    /// How colors are shown: as-srgb shows ACEScg numbers as if they were sRGB, as the paper does;
+    /// Draw only this figure: 1 to 8 are those of the paper, 9 and 10 are our own
+    #[arg(long, value_name = "N", value_parser = in_range([1, LAST_FIGURE]))]
+    pub(crate) only: Option<usize>,
+    /// How colors are shown: as-srgb shows ACEScg values as if they were sRGB, as the paper does;
     /// correct converts them
     #[arg(long, default_value_t = Display::AsSrgb, value_name = "NAME", value_parser = word::<Display>())]
     pub(crate) display: Display,

@@ -1,4 +1,5 @@
-//! The claims of König et al. 2020 as values: the paper's sentence, what was measured, whether it holds, and why.
+//! The claims of König et al. 2020, each as a value: the quoted sentence, the measured numbers, the
+//! verdict and its reason.
 
 mod between;
 mod dyes;
@@ -10,31 +11,29 @@ mod reradiation;
 
 use std::fmt;
 
-use serde::{Serialize, Serializer};
-use upglow_color::Metric;
-use upglow_fit::Watch;
+use serde::Serialize;
+use upglow_color::{Metric, choices};
+use upglow_fit::{BuildError, Watch};
 
-use crate::cubes::PAPER_SWEEPS;
-use crate::cubes::{Cubes, StudyCube};
-use crate::error::StudyError;
+use crate::cubes::{Cubes, PAPER_SWEEPS, StudyCube};
 use crate::field::Field;
 
-/// A sentence of the paper beside our numbers.
+/// A sentence of the paper and what we measured.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Claim {
-    /// A short name in words with hyphens, for tables and tests.
+    /// A short name of words and hyphens.
     pub(crate) id: &'static str,
-    /// Where the paper says it: section, figure.
+    /// Section and figure of the paper.
     pub(crate) section: &'static str,
-    /// What it says, in its words.
+    /// The quoted sentence.
     pub(crate) quote: &'static str,
     /// What was measured, and how.
     pub(crate) measure: &'static str,
     /// The numbers.
     pub(crate) numbers: Vec<Number>,
-    /// Whether the numbers bear the sentence out.
+    /// Whether the numbers confirm the sentence.
     pub(crate) verdict: Verdict,
-    /// When the verdict is "holds", and the reason where it does not or where the numbers surprise.
+    /// The rule of the verdict, and the reason where the claim does not hold or the numbers surprise.
     pub(crate) why: &'static str,
 }
 
@@ -47,40 +46,25 @@ pub(crate) struct Number {
     pub(crate) value: f64,
     /// Its unit; empty for a plain number.
     pub(crate) unit: &'static str,
-    /// How many digits behind the point are worth printing.
+    /// Decimals to print.
     #[serde(skip)]
     pub(crate) digits: usize,
     /// The paper's own number, if it has one.
     pub(crate) paper: Option<f64>,
 }
 
-/// Whether a claim holds here.
+/// Whether the numbers confirm a claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Verdict {
-    /// The numbers agree with the sentence.
     Holds,
-    /// They do not.
     DoesNotHold,
 }
+
+choices!(Verdict, "verdict", Holds = "holds", DoesNotHold = "does not hold");
 
 impl Verdict {
     fn holds_if(condition: bool) -> Self {
         if condition { Self::Holds } else { Self::DoesNotHold }
-    }
-}
-
-impl fmt::Display for Verdict {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Holds => "holds",
-            Self::DoesNotHold => "does not hold",
-        })
-    }
-}
-
-impl Serialize for Verdict {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_str(self)
     }
 }
 
@@ -120,9 +104,9 @@ impl fmt::Display for Number {
     }
 }
 
-/// The cubes of the paper's figures, and ours, as fields.
+/// The cubes of the paper's figures, and our own.
 #[derive(Debug)]
-pub(crate) struct Fields {
+struct Fields {
     /// Euclidean RGB, 4 sweeps.
     rgb: Field,
     /// ΔE76, 4 sweeps.
@@ -131,18 +115,18 @@ pub(crate) struct Fields {
     de76_8: Field,
     /// ΔE00, 4 sweeps: the paper's cube.
     de2000: Field,
-    /// ΔE00, 4 sweeps, moving features.
+    /// ΔE00, 4 sweeps, features as the variables.
     features: Field,
-    /// ΔE00, 4 sweeps, fluorescence by formula.
+    /// ΔE00, 4 sweeps, analytic fluorescence.
     analytic: Field,
-    /// Ours.
+    /// Our own search.
     reference: Field,
-    /// Ours under ΔE76.
+    /// Our own search under ΔE76.
     reference_de76: Field,
 }
 
 impl Fields {
-    pub(crate) fn of(cubes: &Cubes, watch: &dyn Watch) -> Result<Self, StudyError> {
+    fn of(cubes: &Cubes, watch: &dyn Watch) -> Result<Self, BuildError> {
         let field = |which| cubes.get(which, watch).map(Field::of);
         let paper = |metric, sweeps| StudyCube::Paper { metric, sweeps };
         Ok(Self {
@@ -151,27 +135,35 @@ impl Fields {
             de76_8: field(paper(Metric::De76, 2 * PAPER_SWEEPS))?,
             de2000: field(StudyCube::PAPER)?,
             features: field(StudyCube::PaperFeatures)?,
-            analytic: field(StudyCube::PaperAnalytic { sweeps: PAPER_SWEEPS })?,
-            reference: field(StudyCube::Reference)?,
+            analytic: field(StudyCube::PaperAnalytic)?,
+            reference: field(StudyCube::REFERENCE)?,
             reference_de76: field(StudyCube::Search { metric: Metric::De76 })?,
         })
     }
 }
 
-/// Every claim, in the order of the paper's subjects.
-pub(crate) fn claims(fields: &Fields) -> Result<Vec<Claim>, StudyError> {
-    let mut claims = metrics::claims(fields);
-    claims.extend(dyes::claims(fields)?);
-    claims.extend(interpolation::claims(fields));
+/// Measures every claim of the paper, in the order of the paper's subjects.
+///
+/// Builds the eight cubes that this takes, as far as `cubes` lacks them. The numbers are the same on
+/// every run.
+///
+/// # Errors
+///
+/// [`BuildError`] if the resolution is out of range or `watch` stopped the work.
+pub(crate) fn claims(cubes: &Cubes, watch: &dyn Watch) -> Result<Vec<Claim>, BuildError> {
+    let fields = Fields::of(cubes, watch)?;
+    let mut claims = metrics::claims(&fields);
+    claims.extend(dyes::claims(&fields));
+    claims.extend(interpolation::claims(&fields));
     Ok(claims)
 }
 
-/// `part` as a share of `whole`; 0 where there is nothing.
+/// `part` as a share of `whole`; 0 if `whole` is 0.
 fn share(part: usize, whole: usize) -> f64 {
     if whole == 0 { 0.0 } else { part as f64 / whole as f64 }
 }
 
-/// The layer of a grid that is nearest to one of the paper's, numbered 0 to 31.
+/// The layer of a cube that is nearest to this layer of the paper's cube, 0 to 31.
 fn paper_layer(field: &Field, layer: usize) -> usize {
     const PAPER_LAST: usize = 31;
     let last = field.cube().resolution() - 1;

@@ -7,9 +7,8 @@ use upglow_fit::BuildError;
 use upglow_terminal::Failure;
 
 use crate::args::{Args, Command};
-use crate::error::StudyError;
 
-/// Does what was asked for.
+/// Runs the command that was typed.
 pub(crate) fn run(Args { command, console }: Args) -> Result<(), Failure> {
     match command {
         Command::Figures(args) => figures::run(&args, &console),
@@ -17,12 +16,9 @@ pub(crate) fn run(Args { command, console }: Args) -> Result<(), Failure> {
     }
 }
 
-/// What the command line did wrong, or why the work ended.
-fn failure(error: StudyError) -> Failure {
+fn failure(error: BuildError) -> Failure {
     match error {
-        StudyError::Build(BuildError::Stopped) => Failure::Stopped,
-        StudyError::Build(BuildError::Cube(error)) => Failure::option("--resolution", error),
-        StudyError::UnknownFigure { .. } => Failure::option("--only", error),
-        error => Failure::input("study", error),
+        BuildError::Stopped => Failure::Stopped,
+        error => Failure::option("--resolution", error),
     }
 }

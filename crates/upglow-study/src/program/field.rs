@@ -1,4 +1,4 @@
-//! A cube as a field of colors and spectra: where it is smooth, and where single nodes stick out.
+//! A cube as a field of colors and spectra: how smooth it is, and which nodes are artifacts.
 
 use std::sync::Arc;
 
@@ -8,7 +8,7 @@ use upglow_color::{Grid, Lab, Xyz, ciede2000};
 
 use crate::spread::Spread;
 
-/// What the nodes of a cube show, `[blue][green][red]`.
+/// The colors of a cube's nodes, `[blue][green][red]`.
 #[derive(Debug)]
 pub(crate) struct Field {
     cube: Arc<Cube>,
@@ -17,16 +17,16 @@ pub(crate) struct Field {
     pub(crate) shown: Vec<Xyz>,
     /// The same in CIELAB.
     lab: Vec<Lab>,
-    /// The color that each node stands for.
+    /// The color that each node should have.
     target: Vec<Lab>,
 }
 
-/// A node is an artifact if it shows a color this far (ΔE00) or further from what its neighbors
-/// lead one to expect: a difference that is just visible. At half of it the bends at the border of
-/// what can be shown count too; at twice it only the worst of what is seen in the paper's figures.
+/// A node is an artifact if its color differs by at least this (ΔE00) from the color expected from
+/// its neighbors: a difference that is just visible. Half of it would count the bends at the border
+/// of what materials can match; twice of it only the worst artifacts of the paper's figures.
 const ARTIFACT: f64 = 1.0;
 
-/// A radiance factor at 400, 410 … 700 nm: the light that leaves at a wavelength over the light
+/// A radiance factor at 400, 410 … 700 nm: the light that leaves at a wavelength divided by the light
 /// that arrives at it.
 pub(crate) type RadianceFactor = [f64; 31];
 
@@ -55,12 +55,12 @@ impl Field {
     /// The nodes of the layer of one blue index that are artifacts.
     ///
     /// The neighbors of a node are those around it in the layer, in opposite pairs: eight, two at
-    /// an edge, none in a corner. Each misses its own color by a vector in CIELAB. The node is
-    /// expected to show its color plus the component-wise median of those vectors, and is an
+    /// an edge, none in a corner. Each misses its own color by a vector in CIELAB. The expected color
+    /// of the node is its own color plus the component-wise median of those vectors; the node is an
     /// artifact if it differs from that by 1 ΔE00 or more.
     ///
-    /// Taking misses, and not colors, keeps the change from color to color out of it; opposite
-    /// pairs keep a steady change of the misses out, and medians a few bad neighbors.
+    /// Comparing misses instead of colors ignores the change from color to color, opposite pairs
+    /// ignore a steady change of the misses, and medians ignore a few bad neighbors.
     pub(crate) fn artifacts_in_layer(&self, blue: usize) -> Vec<usize> {
         let n = self.cube.resolution();
         (blue * n * n..(blue + 1) * n * n).filter(|&node| self.is_artifact(node)).collect()
@@ -81,14 +81,14 @@ impl Field {
         self.surprise(node, expected) >= ARTIFACT
     }
 
-    /// ΔE00 of what a node shows from its color plus `miss`.
+    /// ΔE00 between the color of a node's material and the node's own color plus `miss`.
     fn surprise(&self, node: usize, miss: [f64; 3]) -> f64 {
         let Lab { l, a, b } = self.target[node];
         let [dl, da, db] = miss;
         ciede2000(Lab { l: l + dl, a: a + da, b: b + db }, self.lab[node])
     }
 
-    /// What a node shows minus its color, L*, a*, b*.
+    /// The color of a node's material minus the color it should have, L*, a*, b*.
     fn miss(&self, node: usize) -> [f64; 3] {
         let (shown, target) = (self.lab[node], self.target[node]);
         [shown.l - target.l, shown.a - target.a, shown.b - target.b]
@@ -98,8 +98,7 @@ impl Field {
         let n = self.cube.resolution();
         let [_, green, red] = self.cube.coordinates(node);
         let inside = |i: usize| i > 0 && i + 1 < n;
-        // Row, column, falling and rising diagonal: to the next node, and whether there is one
-        // on both sides.
+        // Row, column and both diagonals: the stride, and whether there are nodes on both sides.
         [
             (1, inside(red)),
             (n, inside(green)),
@@ -111,10 +110,8 @@ impl Field {
         .flat_map(|(stride, _)| [node - stride, node + stride])
         .collect()
     }
-}
 
-impl Field {
-    /// What leaves each node's material, under the light of the contract.
+    /// The radiance factor of each node's material under the light of the contract.
     pub(crate) fn radiance_factors(&self) -> Vec<RadianceFactor> {
         let nodes = 0..self.cube.nodes().len();
         nodes.into_par_iter().map(|node| self.radiance_factor(node)).collect()
@@ -127,7 +124,7 @@ impl Field {
         let returned = |nm: f64| material.albedo(nm) - material.reflectance(nm);
         let light = || wavelengths.iter().copied().zip(colorimetry.irradiance().iter().copied());
         let emitted: f64 = light().map(|(nm, power)| power * returned(nm)).sum();
-        // One lobe at most: its emission has the same shape whatever light it comes from.
+        // A node's material has one lobe at most, whose emission has the same shape for any source.
         let strongest = light().max_by(|a, b| returned(a.0).total_cmp(&returned(b.0)));
         let (source_nm, _) = strongest.expect("the grid has wavelengths");
         let per_source = returned(source_nm);
@@ -143,8 +140,8 @@ impl Field {
         })
     }
 
-    /// How far (ΔE00) nodes are from the middle between their two neighbors along an axis: from
-    /// their color plus the mean of what those miss theirs by. Over all nodes and axes.
+    /// ΔE00 between nodes and their own color plus the mean miss of their two neighbors along an
+    /// axis, over all nodes and axes.
     pub(crate) fn color_roughness(&self) -> Spread {
         Spread::of(self.triples().map(|triple| self.color_bend(triple)))
     }
@@ -161,8 +158,8 @@ impl Field {
         self.surprise(node, [0, 1, 2].map(|k| (p[k] + q[k]) / 2.0))
     }
 
-    /// How far radiance factors are from the middle between their two neighbors along an axis:
-    /// mean over wavelengths, over all nodes and axes.
+    /// Distance of radiance factors from the mean of their two neighbors' along an axis: mean over
+    /// wavelengths, over all nodes and axes.
     pub(crate) fn spectral_roughness(&self) -> Spread {
         let factors = self.radiance_factors();
         Spread::of(self.triples().map(|[below, node, above]| {
@@ -172,7 +169,7 @@ impl Field {
         }))
     }
 
-    /// Nodes and their next along each axis.
+    /// Pairs of neighbors along each axis.
     pub(crate) fn pairs(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         let n = self.cube.resolution();
         (0..self.cube.nodes().len()).flat_map(move |node| {
@@ -186,14 +183,13 @@ impl Field {
         let n = self.cube.resolution();
         (0..self.cube.nodes().len()).flat_map(move |node| {
             [1, n, n * n].into_iter().filter_map(move |stride| {
-                let place = node / stride % n;
-                (place > 0 && place + 1 < n).then(|| [node - stride, node, node + stride])
+                let index = node / stride % n;
+                (index > 0 && index + 1 < n).then(|| [node - stride, node, node + stride])
             })
         })
     }
 }
 
-/// The middle of an ordered set, or the mean of the two in the middle.
 fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     let count = values.len();
@@ -208,11 +204,11 @@ mod tests {
 
     use crate::cubes::{Cubes, StudyCube};
 
-    /// A matched node inside the cube of six, and inside its layer.
+    /// A node that matches its color, inside the cube of six and inside its layer.
     const INSIDE: usize = (3 * 6 + 3) * 6 + 3;
 
     fn with_one_other(reflectance: f64) -> Field {
-        let cube = Cubes::new(6).get(StudyCube::Reference, &Unwatched).unwrap();
+        let cube = Cubes::new(6).get(StudyCube::REFERENCE, &Unwatched).unwrap();
         let mut nodes = cube.nodes().to_vec();
         let level = upglow::Sigmoid::flat(reflectance).c2;
         let flat = Edge { edge_nm: 565.0, level, slope_per_nm: 0.0 };
@@ -222,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn a_node_that_sticks_out_is_an_artifact_and_makes_the_cube_rougher() {
+    fn an_outlier_is_an_artifact_and_makes_the_cube_rougher() {
         let (smooth, rough) = (with_one_other(0.6), with_one_other(0.2));
         assert!(!smooth.artifacts_in_layer(3).contains(&INSIDE));
         assert!(rough.artifacts_in_layer(3).contains(&INSIDE));
@@ -234,7 +230,7 @@ mod tests {
     fn the_radiance_factor_has_the_color_of_the_node() {
         // Samples over 10 nm from 400 to 700 nm in place of 5 nm from 300 to 830.
         const TOLERANCE: f64 = 0.02;
-        let field = Field::of(Cubes::new(4).get(StudyCube::Reference, &Unwatched).unwrap());
+        let field = Field::of(Cubes::new(4).get(StudyCube::REFERENCE, &Unwatched).unwrap());
         let weights = field.sums.colorimetry().weights();
         for (factor, shown) in field.radiance_factors().iter().zip(&field.shown) {
             let luminance: f64 =

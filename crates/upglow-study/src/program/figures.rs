@@ -1,4 +1,4 @@
-//! The paper's eight figures and two of our own, drawn from what is computed here.
+//! The paper's eight figures and two of our own, drawn from computed data.
 
 mod chromaticity;
 mod cut;
@@ -12,53 +12,33 @@ mod optimizer;
 mod reachability;
 mod sheet;
 
+use upglow_color::{Contract, Grid};
 use upglow_fit::{BuildError, Watch};
 
 pub(crate) use display::Display;
+use display::Painter;
 
 use crate::cubes::Cubes;
-use crate::error::StudyError;
-use crate::raster;
 use crate::svg::Drawing;
 
-/// A drawing, ready to be written.
+/// A finished drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Figure {
     /// Its number; 1 to 8 are the paper's.
     pub(crate) number: u32,
-    /// A file's name without its ending: `figure-05-interpolation`.
+    /// The file name without its suffix: `figure-05-interpolation`.
     pub(crate) name: String,
     /// The drawing as an SVG file, 170 mm wide.
     pub(crate) svg: String,
-    /// What it shows, with the numbers measured; plain text.
+    /// What it shows, with the measured numbers; plain text.
     pub(crate) caption: String,
 }
 
 impl Figure {
-    /// The drawing as a PNG file on white; at `scale` 1 there are 96 pixels to an inch.
-    ///
-    /// The typeface is embedded: the picture is the same on every machine.
-    ///
-    /// # Panics
-    ///
-    /// If `scale` is not positive, or [`Figure::svg`] was replaced by something else than SVG.
-    pub(crate) fn to_png(&self, scale: f32) -> Vec<u8> {
-        raster::rendered(&self.svg, scale)
-    }
-
     fn new(number: u32, name: &str, drawing: Drawing, caption: String) -> Self {
         let svg = drawing.finish(&format!("Figure {number}"), &caption);
         Self { number, name: format!("figure-{number:02}-{name}"), svg, caption }
     }
-}
-
-/// Which figures, and in what colors.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct FigureOptions {
-    /// One number, 1 to 10, or all.
-    pub(crate) only: Option<u32>,
-    /// How colors of the cube become colors of the page.
-    pub(crate) display: Display,
 }
 
 /// What the figures are drawn from.
@@ -69,17 +49,25 @@ struct Studio<'s> {
 }
 
 impl Studio<'_> {
-    /// Nothing, or an error where the watcher wants no more.
-    fn go_on(&self) -> Result<(), StudyError> {
-        if self.watch.stopped() { Err(BuildError::Stopped.into()) } else { Ok(()) }
+    /// Returns an error if the watcher has stopped the work.
+    fn go_on(&self) -> Result<(), BuildError> {
+        if self.watch.stopped() { Err(BuildError::Stopped) } else { Ok(()) }
+    }
+
+    /// Converts colors of the cubes, which all have the default contract.
+    fn painter(&self) -> Painter {
+        self.display.painter(&Contract::default().on(Grid::FIT))
     }
 }
 
 /// Draws one figure.
-type Draw = fn(&Studio<'_>) -> Result<Figure, StudyError>;
+type Draw = fn(&Studio<'_>) -> Result<Figure, BuildError>;
+
+/// The number of the last figure; the first is 1.
+pub(crate) const LAST_FIGURE: usize = 10;
 
 /// Every figure in the order of their numbers.
-const FIGURES: [Draw; 10] = [
+const FIGURES: [Draw; LAST_FIGURE] = [
     gamut::figure_1,
     dyes::figure_2,
     optimizer::figure_3,
@@ -92,28 +80,25 @@ const FIGURES: [Draw; 10] = [
     reachability::figure_10,
 ];
 
-/// Draws the figures; the cubes they need are built where they are not there yet.
+/// Draws all figures, or `only` the one with this number. Cubes that are missing are built.
 ///
-/// The same cubes and options give the same bytes, on every machine and any number of threads.
+/// The same arguments give the same bytes, on every machine and any number of threads.
 ///
 /// # Errors
 ///
-/// [`StudyError`] if there is no such figure, a cube is not to be had, or `watch` stopped the work.
+/// [`BuildError`] if the resolution is out of range or `watch` stopped the work.
+///
+/// # Panics
+///
+/// If there is no figure of this number.
 pub(crate) fn figures(
     cubes: &Cubes,
-    options: &FigureOptions,
+    only: Option<usize>,
+    display: Display,
     watch: &dyn Watch,
-) -> Result<Vec<Figure>, StudyError> {
-    let studio = Studio { cubes, display: options.display, watch };
-    let chosen = match options.only {
-        None => &FIGURES[..],
-        Some(found) => {
-            let index = usize::try_from(found).unwrap_or(usize::MAX).wrapping_sub(1);
-            let last = FIGURES.len();
-            let figure = FIGURES.get(index).ok_or(StudyError::UnknownFigure { found, last })?;
-            std::slice::from_ref(figure)
-        }
-    };
+) -> Result<Vec<Figure>, BuildError> {
+    let studio = Studio { cubes, display, watch };
+    let chosen = only.map_or(&FIGURES[..], |number| std::slice::from_ref(&FIGURES[number - 1]));
     let draw = |figure: &Draw| {
         studio.go_on()?;
         figure(&studio)
@@ -121,7 +106,7 @@ pub(crate) fn figures(
     chosen.iter().map(draw).collect()
 }
 
-/// A share as a percentage for people: none and all are said of nothing else.
+/// A share as a percentage; only exact shares of 0 and 1 are written as 0.0 % and 100.0 %.
 fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     let is_rounded_off = |end: f64| percent != end && (percent - end).abs() < 0.05;

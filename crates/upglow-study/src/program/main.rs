@@ -1,16 +1,14 @@
 //! The program `upglow-study`: the figures and claims of König et al. 2020, computed.
 //!
-//! What was typed ([`args`]) becomes figures or claims, and a command writes them. The numbers that
-//! Python needs as well are in the library of this package.
+//! A command ([`commands`]) computes [`figures`] or [`claims`] and writes them. The numbers that the
+//! Python package needs too are in the library of this crate.
 
 mod args;
 mod claims;
 mod commands;
 mod cubes;
-mod error;
 mod field;
 mod figures;
-mod fonts;
 mod raster;
 mod report;
 mod spread;

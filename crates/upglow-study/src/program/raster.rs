@@ -1,12 +1,16 @@
-//! Pictures of pixels as PNG: from colors, dots on a transparent ground, drawings on white.
+//! PNG pictures: of single pixels, of dots, and of drawings.
 
+use std::sync::{Arc, OnceLock};
+
+use damascene_fonts_roboto::{ROBOTO_BOLD, ROBOTO_ITALIC, ROBOTO_REGULAR};
 use resvg::tiny_skia::{Color, FillRule, IntSize, Paint, PathBuilder, Pixmap, Transform};
+use resvg::usvg::{Options, Tree, fontdb};
 
-/// A PNG of opaque pixels, `[row][column]` from the top left.
+/// A PNG of opaque sRGB pixels, `[row][column]` from the top left.
 ///
 /// # Panics
 ///
-/// If there are no pixels, or they do not fill the rows.
+/// If there are no pixels, or the last row is incomplete.
 pub(crate) fn png(columns: usize, colors: &[[u8; 3]]) -> Vec<u8> {
     let side = |n: usize| u32::try_from(n).expect("a picture has fewer than 2³² rows");
     let data = colors.iter().flat_map(|&[r, g, b]| [r, g, b, u8::MAX]).collect();
@@ -15,7 +19,8 @@ pub(crate) fn png(columns: usize, colors: &[[u8; 3]]) -> Vec<u8> {
     encoded(&pixmap)
 }
 
-/// A PNG of dots on a transparent ground; centers and radius in pixels. Later dots lie above.
+/// A PNG of dots on a transparent background; centers and radius in pixels. Later dots cover
+/// earlier ones.
 ///
 /// # Panics
 ///
@@ -32,17 +37,16 @@ pub(crate) fn dots_png(size: [u32; 2], radius: f32, dots: &[([f32; 2], [u8; 3])]
 }
 
 fn encoded(pixmap: &Pixmap) -> Vec<u8> {
-    pixmap.encode_png().expect("memory takes any bytes")
+    pixmap.encode_png().expect("encoding to memory does not fail")
 }
 
-/// A picture on white, as PNG.
+/// An SVG drawing on white as PNG; at `scale` 1 it has 96 pixels per inch.
 ///
 /// # Panics
 ///
-/// If `svg` is not one that [`crate::svg`] wrote, or the picture has no pixels.
+/// If `svg` is not well-formed, or `scale` is not positive.
 pub(crate) fn rendered(svg: &str, scale: f32) -> Vec<u8> {
-    let tree = resvg::usvg::Tree::from_str(svg, &crate::fonts::svg_options())
-        .expect("drawings are well-formed");
+    let tree = Tree::from_str(svg, &svg_options()).expect("drawings are well-formed");
     let size = tree.size().to_int_size().scale_by(scale).expect("the scale is positive");
     let mut pixmap = Pixmap::new(size.width(), size.height()).expect("no side is zero");
     pixmap.fill(Color::WHITE);
@@ -52,12 +56,26 @@ pub(crate) fn rendered(svg: &str, scale: f32) -> Vec<u8> {
     encoded(&pixmap)
 }
 
+/// The embedded typeface instead of the system's fonts: pictures are the same on every machine.
+fn svg_options() -> Options<'static> {
+    static FACES: OnceLock<Arc<fontdb::Database>> = OnceLock::new();
+    let faces = FACES.get_or_init(|| {
+        let mut faces = fontdb::Database::new();
+        for face in [ROBOTO_REGULAR, ROBOTO_BOLD, ROBOTO_ITALIC] {
+            faces.load_font_data(face.to_vec());
+        }
+        faces.set_sans_serif_family("Roboto");
+        Arc::new(faces)
+    });
+    Options { fontdb: Arc::clone(faces), font_family: "Roboto".into(), ..Options::default() }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn pixels_come_back_from_their_png() {
+    fn a_png_holds_the_pixels_it_was_made_of() {
         let colors = [[1, 2, 3], [4, 5, 6], [250, 0, 9], [7, 8, 9]];
         let back = Pixmap::decode_png(&png(2, &colors)).unwrap();
         let found: Vec<[u8; 3]> =
@@ -66,7 +84,7 @@ mod tests {
     }
 
     #[test]
-    fn a_dot_lies_where_it_is_put() {
+    fn a_dot_is_drawn_at_its_center() {
         let png = dots_png([9, 9], 1.5, &[([2.5, 6.5], [10, 20, 30])]);
         let back = Pixmap::decode_png(&png).unwrap();
         assert_eq!(back.pixel(2, 6).unwrap().alpha(), 255);

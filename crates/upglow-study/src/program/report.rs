@@ -1,25 +1,10 @@
-//! The table of claims, for people.
+//! The claims as a report for people.
 
 use std::fmt::Write;
 
-use upglow_fit::Watch;
+use crate::claims::Claim;
 
-use crate::claims::{Claim, Fields, claims};
-use crate::cubes::Cubes;
-use crate::error::StudyError;
-
-/// Measures every claim of the paper.
-///
-/// Builds seven cubes, if `cubes` has not got them yet. The numbers are the same on every run.
-///
-/// # Errors
-///
-/// [`StudyError`] if the resolution is out of range or `watch` stopped the work.
-pub(crate) fn reproduce(cubes: &Cubes, watch: &dyn Watch) -> Result<Vec<Claim>, StudyError> {
-    claims(&Fields::of(cubes, watch)?)
-}
-
-/// The claims as Markdown: a table, the numbers, and what the measures mean.
+/// The claims as Markdown: a table of verdicts with the numbers, and how each was measured.
 pub(crate) fn to_markdown(resolution: usize, claims: &[Claim]) -> String {
     let mut text = format!(
         "# The paper's claims, measured\n\n\

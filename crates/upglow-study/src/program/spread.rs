@@ -1,17 +1,13 @@
-//! Many numbers in a few.
+//! Statistics of a set of numbers.
 
-/// Count, mean, median and tail of a set of numbers; zeros for none.
+/// Count, mean, median and tail of a set of numbers; all zero for an empty set.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Spread {
-    /// How many.
     pub(crate) count: usize,
-    /// Their mean.
     pub(crate) mean: f64,
-    /// Half of them are at most this.
     pub(crate) median: f64,
-    /// 95 % of them are at most this.
+    /// The 95th percentile.
     pub(crate) p95: f64,
-    /// The greatest.
     pub(crate) max: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Drawings in millimeters, written as SVG.
+//! Drawings in millimeters, as SVG.
 
 mod frame;
 mod palette;
@@ -12,10 +12,11 @@ pub(crate) use frame::{Axis, Frame};
 pub(crate) use palette::{ABSORPTION, EMISSION, INK, MUTED, STANDINGS, WEIGHTS, error_color};
 pub(crate) use text::{Anchor, Text};
 
-use crate::fonts::FONT_STACK;
-
 /// Width of every figure: the text width of a journal's page.
 pub(crate) const PAGE_MM: f64 = 170.0;
+
+/// The typeface of the PNG files first, then common fonts for viewers of the SVG files.
+const FONT_STACK: &str = "Roboto, 'Helvetica Neue', Helvetica, Arial, sans-serif";
 
 /// A rectangle on the page, mm from its top left corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,7 +36,7 @@ impl Rect {
         [self.left + self.width / 2.0, self.top + self.height / 2.0]
     }
 
-    /// An element that fills it.
+    /// An element of this size and position.
     fn place(self, name: &'static str) -> Element {
         let Self { left, top, width, height } = self;
         let sides = [("x", left), ("y", top), ("width", width), ("height", height)];
@@ -64,7 +65,7 @@ impl Stroke {
         Self { dashes, ..self }
     }
 
-    /// An element that is a line of this kind, with no area.
+    /// Draws an element as a line without filling it.
     fn draw(self, element: Element) -> Element {
         element
             .with("fill", "none")
@@ -74,7 +75,7 @@ impl Stroke {
     }
 }
 
-/// A page that things are drawn on, one above the other.
+/// A page; what is drawn later covers what was drawn before.
 #[derive(Clone, Debug)]
 pub(crate) struct Drawing {
     height_mm: f64,
@@ -148,7 +149,7 @@ impl Drawing {
         self.put(stroke.draw(circle));
     }
 
-    /// A line with a filled head at either end.
+    /// A line with filled arrowheads at both ends.
     pub(crate) fn double_arrow(&mut self, from: [f64; 2], to: [f64; 2], stroke: Stroke) {
         const HEAD_MM: [f64; 2] = [1.6, 0.55];
         let along = [to[0] - from[0], to[1] - from[1]];
@@ -165,10 +166,10 @@ impl Drawing {
         }
     }
 
-    /// Cells of one color each, `[row][column]` from the top left, that fill `rect`.
+    /// Fills `rect` with cells of one color each, `[row][column]` from the top left.
     pub(crate) fn cells(&mut self, rect: Rect, size: [usize; 2], colors: &[[u8; 3]]) {
-        // Where cells only meet, antialiasing lets the page shine through: each reaches under those
-        // that come after it.
+        // Antialiasing would let the page shine through between cells that only touch, so each
+        // extends below the cells that are drawn after it.
         const OVERLAP: f64 = 0.5;
         let [columns, rows] = size;
         let [x, y] = [rect.left, rect.top].map(number);
@@ -188,7 +189,7 @@ impl Drawing {
         self.put_around(Element::new("g").with("transform", place), &(cells + "\n"));
     }
 
-    /// A PNG picture stretched over `rect`, its pixels sharp.
+    /// Stretches a PNG picture over `rect` without smoothing.
     pub(crate) fn pixels(&mut self, rect: Rect, png: &[u8]) {
         let data = BASE64.encode(png);
         let picture = rect
@@ -199,7 +200,7 @@ impl Drawing {
         self.put(picture);
     }
 
-    /// What `draw` draws, cut off at the edges of `rect`.
+    /// Clips what `draw` draws to `rect`.
     pub(crate) fn clipped(&mut self, rect: Rect, draw: impl FnOnce(&mut Self)) {
         let id = format!("clip{}", self.clips);
         self.clips += 1;
@@ -240,7 +241,7 @@ fn runs(line: &[[u8; 3]]) -> Vec<(usize, usize)> {
         .collect()
 }
 
-/// A length to a hundredth of a millimeter, the same text everywhere.
+/// A length to a hundredth of a millimeter.
 pub(crate) fn number(value: f64) -> String {
     trimmed(format!("{value:.2}"))
 }

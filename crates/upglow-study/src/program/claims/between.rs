@@ -1,4 +1,4 @@
-//! What stands between the nodes of a cube, against the color it should be.
+//! How well interpolated materials match the colors between the nodes of a cube.
 
 use rayon::prelude::*;
 use upglow::{Cube, Interpolation, Sigmoid};
@@ -11,34 +11,33 @@ use crate::spread::Spread;
 /// A node is matched within this ΔE00.
 pub(super) const MATCHED: f32 = 0.01;
 
-/// A color below this chroma C*ab is nearly gray. Larger takes in colors that anyone would name,
-/// smaller leaves too few nodes to measure.
+/// A color up to this chroma C*ab is nearly gray. A larger limit includes colors that clearly have a
+/// hue; a smaller one leaves too few nodes to measure.
 const GRAY_CHROMA: f64 = 10.0;
 
-/// The center of a tetrahedron of the look-up whose four corners match their colors.
+/// The center of a tetrahedron of the look-up, all of whose corners match their colors.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Center {
     rgb: LinearRgb,
-    /// What is at the corners.
     pub(super) kind: Kind,
     /// Whether all corners are bright and saturated.
     pub(super) is_vivid: bool,
 }
 
-/// What is at the corners.
+/// What the materials at the corners are like.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     /// Slopes of both signs.
     Flip,
-    /// One sign, and a corner that is nearly gray.
+    /// Slopes of one sign, and a corner that is nearly gray.
     Gray,
-    /// One sign, and no corner nearly gray.
+    /// Slopes of one sign, and no corner nearly gray.
     Colored,
     /// A corner without features: features cannot be interpolated there.
     Flat,
 }
 
-/// Every center, in the order of the nodes.
+/// All centers, in the order of the nodes.
 pub(super) fn centers(field: &Field) -> Vec<Center> {
     let cube = field.cube();
     let last = cube.resolution() - 1;
@@ -59,7 +58,7 @@ pub(super) fn centers(field: &Field) -> Vec<Center> {
         .collect()
 }
 
-/// The centers of the six tetrahedra of the cell above a node.
+/// The centers of the six tetrahedra of the cell whose lowest corner is this node.
 fn cell_centers(cube: &Cube, node: usize) -> [LinearRgb; 6] {
     const ORDERS: [[f64; 3]; 6] = [
         [0.75, 0.5, 0.25],
@@ -92,7 +91,7 @@ fn kind(field: &Field, corners: [usize; 4]) -> Kind {
     }
 }
 
-/// ΔE00 of what stands at some centers from the color it should be.
+/// ΔE00 between the interpolated material and the requested color, at the centers of one kind.
 pub(super) fn misses(
     field: &Field,
     centers: &[Center],

@@ -1,4 +1,4 @@
-//! What eight measured dyes do in place of a formula.
+//! How eight measured dyes compare with analytic fluorescence.
 
 use upglow::Fluorescence;
 use upglow_color::{ColorSolid, Grid};
@@ -7,24 +7,23 @@ use super::between::MATCHED;
 use super::gamut::bright_area;
 use super::reradiation::{Backward, backward_shares};
 use super::{Claim, Fields, Number, Verdict, paper_layer, share};
-use crate::error::StudyError;
 use crate::field::Field;
 
 /// Two gamuts are similar if the area of one is within this share of the other's.
 const SIMILAR: f64 = 0.1;
 
-/// A color is reached within this ΔE00: just visible side by side.
+/// A color is reached if the material is within this ΔE00 of it: just visible side by side.
 const REACHED: f32 = 1.0;
 
-pub(super) fn claims(fields: &Fields) -> Result<Vec<Claim>, StudyError> {
-    Ok(vec![
+pub(super) fn claims(fields: &Fields) -> Vec<Claim> {
+    vec![
         border(fields),
         gamut(fields),
         artifacts(fields),
         time(fields),
         indices(fields),
-        backward()?,
-    ])
+        backward(),
+    ]
 }
 
 fn reached(field: &Field) -> f64 {
@@ -169,8 +168,8 @@ fn neighboring_dyes(field: &Field) -> (usize, usize) {
     (pairs, differing)
 }
 
-fn backward() -> Result<Claim, StudyError> {
-    let shares = backward_shares()?;
+fn backward() -> Claim {
+    let shares = backward_shares();
     let (of_red, others): (Vec<&Backward>, Vec<&Backward>) =
         shares.iter().partition(|share| share.first == RED);
     let greatest = |shares: &[&Backward], of: fn(&Backward) -> f64| {
@@ -178,7 +177,7 @@ fn backward() -> Result<Claim, StudyError> {
     };
     let pooled = greatest(&of_red, |share| share.pooled);
     let separate = greatest(&of_red, |share| share.separate);
-    Ok(Claim {
+    Claim {
         id: "separate-dyes-are-more-accurate",
         section: "4.2",
         quote: "It would be more accurate to calculate absorption and emission for both dyes \
@@ -199,8 +198,8 @@ fn backward() -> Result<Claim, StudyError> {
         why: "Holds if keeping the dyes apart lowers the share. Pooled, the violet emitter gives \
               back what the red dye absorbed, which no fluorescence does; what is left when they \
               are apart is the overlap of each dye's own curves.",
-    })
+    }
 }
 
-/// The dye of the longest wavelengths; the next in the ring is violet.
+/// The dye that emits at the longest wavelengths; the next one in the ring is violet.
 const RED: &str = "Alexa_Fluor_635";

@@ -1,12 +1,11 @@
-//! How much of the chromaticity diagram is reached.
+//! How much of the chromaticity diagram a cube covers.
 
 use crate::field::Field;
 
-/// Only colors this bright count, X + Y + Z, as in the paper's figure 1.
+/// Least X + Y + Z of the colors that count, as in the paper's figure 1.
 const BRIGHT: f64 = 1.5;
 
-/// The area in (x, y) of the convex hull of the chromaticities that a cube shows with
-/// X + Y + Z ≥ 1.5.
+/// The area in (x, y) of the convex hull of a cube's chromaticities with X + Y + Z ≥ 1.5.
 pub(super) fn bright_area(field: &Field) -> f64 {
     let bright = field.shown.iter().filter(|xyz| xyz.0.iter().sum::<f64>() >= BRIGHT);
     area(&convex_hull(bright.filter_map(|xyz| xyz.chromaticity()).collect()))

@@ -1,18 +1,20 @@
-//! What interpolating shift, width and slope does, and what repairs it.
+//! What the interpolation of shift, width and slope does, and what corrects its errors.
 
 use upglow::{Features, Interpolation};
 use upglow_color::ciede2000;
+use upglow_study::Mixing;
 
 use super::between::{Center, Kind, centers, misses};
-use super::paths::{Means, color, lab, random_pairs, ways};
+use super::paths::{color, lab, path_spreads, random_pairs};
 use super::{Claim, Fields, Number, Verdict};
 use crate::field::Field;
 
 pub(super) fn claims(fields: &Fields) -> Vec<Claim> {
     let field = &fields.features;
     let centers = centers(field);
-    let mut claims = vec![near_the_spectrum(field), meaningful(field)];
-    claims.extend([
+    vec![
+        near_the_spectrum(field),
+        meaningful(field),
         works_with_one_sign(field, &centers),
         grays_have_many_features(field),
         small_slopes(field),
@@ -20,14 +22,13 @@ pub(super) fn claims(fields: &Fields) -> Vec<Claim> {
         fails_at_grays(field, &centers),
         hybrid(field, &centers),
         blend(fields, &centers),
-    ]);
-    claims
+    ]
 }
 
 fn near_the_spectrum(field: &Field) -> Claim {
     let pairs = random_pairs(field);
-    let [coefficients, features] = [Means::Coefficients, Means::Features]
-        .map(|means| ways(field.sums(), &pairs, means).from_spectrum);
+    let [coefficients, features] = [Mixing::Coefficients, Mixing::Features]
+        .map(|mixing| path_spreads(field.sums(), &pairs, mixing).from_spectrum);
     Claim {
         id: "features-near-the-spectrum",
         section: "4.3, figure 5",
@@ -55,8 +56,9 @@ fn near_the_spectrum(field: &Field) -> Claim {
 
 fn meaningful(field: &Field) -> Claim {
     let pairs = random_pairs(field);
-    let [coefficients, features, spectra] = [Means::Coefficients, Means::Features, Means::Spectra]
-        .map(|means| ways(field.sums(), &pairs, means));
+    let [coefficients, features, spectra] =
+        [Mixing::Coefficients, Mixing::Features, Mixing::Spectra]
+            .map(|mixing| path_spreads(field.sums(), &pairs, mixing));
     Claim {
         id: "features-more-meaningful",
         section: "5.3, figure 5",
@@ -110,13 +112,13 @@ fn works_with_one_sign(field: &Field, centers: &[Center]) -> Claim {
 
 fn grays_have_many_features(field: &Field) -> Claim {
     let show = |shift_nm: f64, width_nm: f64| {
-        // Width times slope is the same for all: the same gray.
+        // Width times slope is constant, so these are the same gray.
         let shape = Features { shift_nm, width_nm, slope_per_nm: 0.1 / width_nm };
         let gray = shape.to_sigmoid().expect("width and slope are not zero");
         lab(field.sums(), color(field.sums(), gray))
     };
     let known = show(550.0, 4000.0);
-    let [by_width, by_shift] = [show(550.0, 8000.0), show(450.0, 4000.0)];
+    let [twice_as_wide, shifted] = [show(550.0, 8000.0), show(450.0, 4000.0)];
     Claim {
         id: "grays-have-many-features",
         section: "4.3",
@@ -126,12 +128,12 @@ fn grays_have_many_features(field: &Field) -> Claim {
         measure: "ΔE00 of the reflectance of shift 550 nm, width 4000 nm, slope 0.1 / width from \
                   those of twice the width and half the slope, and of a shift of 450 nm",
         numbers: vec![
-            Number::de2000("twice the width", ciede2000(known, by_width)),
-            Number::de2000("another shift", ciede2000(known, by_shift)),
+            Number::de2000("twice the width", ciede2000(known, twice_as_wide)),
+            Number::de2000("another shift", ciede2000(known, shifted)),
             Number::new("C*ab", known.a.hypot(known.b), "", 2),
         ],
         verdict: Verdict::holds_if(
-            ciede2000(known, by_width) <= 1.0 && ciede2000(known, by_shift) <= 1.0,
+            ciede2000(known, twice_as_wide) <= 1.0 && ciede2000(known, shifted) <= 1.0,
         ),
         why: "Holds if neither is visible, within 1 ΔE00.",
     }
@@ -160,12 +162,10 @@ fn small_slopes(field: &Field) -> Claim {
 }
 
 fn fails_at_flips(field: &Field, centers: &[Center]) -> Claim {
-    let features =
-        misses(field, centers, |center| center.kind == Kind::Flip, Interpolation::Features);
-    let coefficients =
-        misses(field, centers, |center| center.kind == Kind::Flip, Interpolation::Coefficients);
-    let one_sign =
-        misses(field, centers, |center| center.kind == Kind::Colored, Interpolation::Features);
+    let misses = |kind, mode| misses(field, centers, |center| center.kind == kind, mode);
+    let features = misses(Kind::Flip, Interpolation::Features);
+    let coefficients = misses(Kind::Flip, Interpolation::Coefficients);
+    let one_sign = misses(Kind::Colored, Interpolation::Features);
     Claim {
         id: "features-fail-at-sign-flips",
         section: "5.3, figure 8b",
@@ -189,11 +189,10 @@ fn fails_at_flips(field: &Field, centers: &[Center]) -> Claim {
 }
 
 fn fails_at_grays(field: &Field, centers: &[Center]) -> Claim {
-    let gray = misses(field, centers, |center| center.kind == Kind::Gray, Interpolation::Features);
-    let colored =
-        misses(field, centers, |center| center.kind == Kind::Colored, Interpolation::Features);
-    let coefficients =
-        misses(field, centers, |center| center.kind == Kind::Gray, Interpolation::Coefficients);
+    let misses = |kind, mode| misses(field, centers, |center| center.kind == kind, mode);
+    let gray = misses(Kind::Gray, Interpolation::Features);
+    let colored = misses(Kind::Colored, Interpolation::Features);
+    let coefficients = misses(Kind::Gray, Interpolation::Coefficients);
     Claim {
         id: "features-fail-at-grays",
         section: "4.3",
@@ -214,9 +213,9 @@ fn fails_at_grays(field: &Field, centers: &[Center]) -> Claim {
 }
 
 fn hybrid(field: &Field, centers: &[Center]) -> Claim {
-    let [features, hybrid] = [Interpolation::Features, Interpolation::Hybrid]
-        .map(|mode| misses(field, centers, |center| center.kind == Kind::Flip, mode));
-    let blend = misses(field, centers, |center| center.kind == Kind::Flip, Interpolation::Blend);
+    let [features, hybrid, blend] =
+        [Interpolation::Features, Interpolation::Hybrid, Interpolation::Blend]
+            .map(|mode| misses(field, centers, |center| center.kind == Kind::Flip, mode));
     Claim {
         id: "hybrid-repairs-sign-flips",
         section: "5.3, figure 8c",

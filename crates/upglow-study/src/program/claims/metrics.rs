@@ -1,10 +1,10 @@
-//! What the choice of color difference does to the fit.
+//! How the choice of color difference affects the fit.
 
 use super::{Claim, Fields, Number, Verdict, paper_layer, share};
 use crate::field::Field;
 
-/// A layer has artifacts if more than this share of its nodes are: at 32 nodes along an axis, ten
-/// of 1024. Smaller calls the one or two nodes at a bend of the gamut's border artifacts.
+/// A layer has artifacts if more than this share of its nodes are artifacts: ten of 1024 at the
+/// paper's resolution. A smaller limit would count one or two nodes at a bend of the gamut's border.
 const SOME_ARTIFACTS: f64 = 0.01;
 
 pub(super) fn claims(fields: &Fields) -> Vec<Claim> {
@@ -44,7 +44,7 @@ fn time(fields: &Fields) -> Claim {
     }
 }
 
-/// Artifacts in the layer B = 0: how many, and whether that is some.
+/// Artifacts in the layer B = 0: how many, and whether they are more than [`SOME_ARTIFACTS`].
 fn at_black(field: &Field) -> (usize, bool) {
     let (count, nodes) = (field.artifacts_in_layer(0).len(), field.cube().resolution().pow(2));
     (count, share(count, nodes) > SOME_ARTIFACTS)
@@ -123,7 +123,7 @@ fn artifacts_of_de2000(fields: &Fields) -> Claim {
     }
 }
 
-/// Roughness of the colors: whole cube, and the layers of figure 6.
+/// Color roughness of the whole cube, and of the two layers of figure 6.
 fn roughness(field: &Field) -> [f64; 3] {
     let in_layer = |paper: usize| field.color_roughness_in_layer(paper_layer(field, paper)).mean;
     [field.color_roughness().mean, in_layer(31), in_layer(8)]
@@ -158,7 +158,8 @@ fn smoothness_of_de76(fields: &Fields) -> Claim {
 
 fn smoothness_of_de2000(fields: &Fields) -> Claim {
     let [rgb, de2000] = [&fields.rgb, &fields.de2000].map(roughness);
-    let at_figure = |field: &Field| field.color_roughness_in_layer(paper_layer(field, 22)).mean;
+    let [rgb_layer, de2000_layer] = [&fields.rgb, &fields.de2000]
+        .map(|field| field.color_roughness_in_layer(paper_layer(field, 22)).mean);
     let spectral =
         [&fields.rgb, &fields.de2000].map(|field| 100.0 * field.spectral_roughness().mean);
     Claim {
@@ -172,14 +173,12 @@ fn smoothness_of_de2000(fields: &Fields) -> Claim {
         numbers: vec![
             Number::de2000("RGB", rgb[0]),
             Number::de2000("ΔE00", de2000[0]),
-            Number::de2000("RGB, B = 0.7", at_figure(&fields.rgb)),
-            Number::de2000("ΔE00, B = 0.7", at_figure(&fields.de2000)),
+            Number::de2000("RGB, B = 0.7", rgb_layer),
+            Number::de2000("ΔE00, B = 0.7", de2000_layer),
             Number::new("spectra, RGB", spectral[0], "%", 3),
             Number::new("spectra, ΔE00", spectral[1], "%", 3),
         ],
-        verdict: Verdict::holds_if(
-            de2000[0] < rgb[0] && at_figure(&fields.de2000) < at_figure(&fields.rgb),
-        ),
+        verdict: Verdict::holds_if(de2000[0] < rgb[0] && de2000_layer < rgb_layer),
         why: "Holds if the colors of ΔE00 are less rough in both. It is the metric in which \
               roughness is measured, as an eye would; the spectra, which no metric sees, are about \
               as rough under either.",

@@ -1,45 +1,35 @@
-//! The way from one reflectance to another, as colors.
+//! The colors on the path from one reflectance to another.
 
 use upglow::{Features, Material, ModelOnGrid, Sigmoid};
 use upglow_color::{Lab, Xyz, ciede2000};
+use upglow_study::Mixing;
 
 use crate::field::Field;
 use crate::spread::Spread;
 
-/// How far the ways between some pairs of reflectances are from what one would wish.
+/// How even and how direct the paths between pairs of reflectances are.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Ways {
+pub(super) struct PathSpreads {
     /// Greatest ΔE00 from the mixture of the two spectra at the weights ¼, ½ and ¾.
     pub(super) from_spectrum: Spread,
-    /// Longest of 16 steps over the mean step, in ΔE00; 1 is an even pace.
+    /// Longest of 16 steps divided by the mean step, in ΔE00; 1 is an even pace.
     pub(super) pace: Spread,
     /// Greatest deviation of the hue angle from an even turn between the ends, degrees.
     pub(super) hue_deg: Spread,
-    /// Length of the way over the distance of its ends, in CIELAB; 1 is straight.
+    /// Length of the path divided by the distance of its ends, in CIELAB; 1 is straight.
     pub(super) detour: Spread,
-}
-
-/// What is interpolated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Means {
-    /// c0, c1, c2.
-    Coefficients,
-    /// Shift, width, slope.
-    Features,
-    /// The spectra themselves.
-    Spectra,
 }
 
 /// How many pairs are drawn.
 const PAIRS: usize = 2000;
 
-/// Any number will do; another draws other pairs.
+/// Seed of the random pairs.
 const SEED: u64 = 20;
 
 /// Chroma C*ab from which a color is called saturated, and lightness L* from which it is bright.
 const SATURATED: (f64, f64) = (30.0, 50.0);
 
-/// Steps of a way.
+/// Steps of a path.
 const STEPS: usize = 16;
 
 /// Two reflectances.
@@ -70,7 +60,7 @@ pub(super) fn is_vivid(color: Lab) -> bool {
     color.l >= lightness && color.a.hypot(color.b) >= chroma
 }
 
-/// A number below `count`: the next of the `SplitMix64` sequence.
+/// The next number of the `SplitMix64` sequence, modulo `count`.
 #[expect(clippy::cast_possible_truncation, reason = "the remainder is below a usize")]
 fn below(count: usize, state: &mut u64) -> usize {
     *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
@@ -80,13 +70,13 @@ fn below(count: usize, state: &mut u64) -> usize {
     ((z ^ (z >> 31)) % count as u64) as usize
 }
 
-/// The ways between pairs of reflectances, by what is interpolated.
-pub(super) fn ways(sums: &ModelOnGrid, pairs: &[Ends], means: Means) -> Ways {
+/// Measures the paths between pairs of reflectances under one kind of interpolation.
+pub(super) fn path_spreads(sums: &ModelOnGrid, pairs: &[Ends], mixing: Mixing) -> PathSpreads {
     let paths: Vec<[Vec<Lab>; 2]> = pairs
         .iter()
-        .map(|&ends| [means, Means::Spectra].map(|means| path(sums, ends, means)))
+        .map(|&ends| [mixing, Mixing::Spectra].map(|mixing| path(sums, ends, mixing)))
         .collect();
-    Ways {
+    PathSpreads {
         from_spectrum: Spread::of(paths.iter().map(|[path, truth]| {
             let quarters = [STEPS / 4, STEPS / 2, 3 * STEPS / 4];
             quarters.map(|i| ciede2000(truth[i], path[i])).into_iter().fold(0.0, f64::max)
@@ -105,7 +95,7 @@ fn pace(path: &[Lab]) -> f64 {
     steps.max / steps.mean
 }
 
-/// The turn is the one that the way takes, so going the long way around is no deviation by itself.
+/// The even turn goes around in the direction of the path, even if that is the longer one.
 fn hue_deviation_deg(path: &[Lab]) -> f64 {
     let mut hues: Vec<f64> = path.iter().map(|color| color.b.atan2(color.a).to_degrees()).collect();
     for i in 1..hues.len() {
@@ -117,7 +107,7 @@ fn hue_deviation_deg(path: &[Lab]) -> f64 {
     hues.iter().enumerate().map(|(i, hue)| (hue - even(i)).abs()).fold(0.0, f64::max)
 }
 
-fn path(sums: &ModelOnGrid, [from, to]: Ends, means: Means) -> Vec<Lab> {
+fn path(sums: &ModelOnGrid, [from, to]: Ends, mixing: Mixing) -> Vec<Lab> {
     let ends = [from, to].map(|reflectance| color(sums, reflectance).0);
     let at = |step: usize| {
         let t = step as f64 / STEPS as f64;
@@ -127,10 +117,10 @@ fn path(sums: &ModelOnGrid, [from, to]: Ends, means: Means) -> Vec<Lab> {
             c1: mix(p.c1, q.c1),
             c2: mix(p.c2, q.c2),
         };
-        match means {
-            Means::Spectra => Xyz([0, 1, 2].map(|k| mix(ends[0][k], ends[1][k]))),
-            Means::Coefficients => color(sums, mixed(from, to)),
-            Means::Features => color(sums, between_features(from, to, mix)),
+        match mixing {
+            Mixing::Spectra => Xyz([0, 1, 2].map(|k| mix(ends[0][k], ends[1][k]))),
+            Mixing::Coefficients => color(sums, mixed(from, to)),
+            Mixing::Features => color(sums, between_features(from, to, mix)),
         }
     };
     (0..=STEPS).map(|step| lab(sums, at(step))).collect()

@@ -1,33 +1,31 @@
-//! Light that comes out at shorter wavelengths than it went in.
+//! Re-radiation at wavelengths shorter than those of the absorbed light.
 
-use upglow::{
-    DyeModel, DyeOptions, DyeSet, Fluorescence, Material, Mixing, Mixture, Model, Sigmoid,
-};
+use upglow::{Fluorescence, Material, Mixing, Mixture, Model, Sigmoid};
 use upglow_color::{Colorimetry, Contract, Grid};
 
-use crate::error::StudyError;
+use crate::cubes::paper_dyes;
 
-/// A pair of neighbors of the paper's ring at its worst weight.
+/// A pair of neighboring dyes, at the weight where pooled mixing moves most energy backward.
 #[derive(Clone, Debug)]
 pub(super) struct Backward {
     /// The name of the first dye.
     pub(super) first: String,
-    /// The greatest share, over all weights, of re-radiated energy that comes out at shorter
-    /// wavelengths than it went in, pooled.
+    /// The share of the re-radiated energy that leaves at shorter wavelengths than it was absorbed
+    /// at, for pooled mixing.
     pub(super) pooled: f64,
-    /// The same share at that weight, each dye for itself.
+    /// The same for separate mixing.
     pub(super) separate: f64,
 }
 
 /// Weights tried between two dyes: 0, 0.05 … 1. The share is smooth in the weight.
 const WEIGHTS: u32 = 20;
 
-/// Every pair, under the light of the default contract.
-pub(super) fn backward_shares() -> Result<Vec<Backward>, StudyError> {
-    let [pooled, separate] = [model(Mixing::Pooled)?, model(Mixing::Separate)?];
+/// All pairs, under the light of the default contract.
+pub(super) fn backward_shares() -> Vec<Backward> {
     let colorimetry = Contract::default().on(Grid::FIT);
-    let set = DyeSet::named("konig8")?;
-    let names = set.dyes().iter().map(|dye| dye.name.clone());
+    let dyes = paper_dyes(Mixing::Pooled);
+    let names = dyes.set().dyes().iter().map(|dye| dye.name.clone()).collect::<Vec<_>>();
+    let [pooled, separate] = [dyes, paper_dyes(Mixing::Separate)].map(Model::Dyes);
     let worst = |(first, name)| {
         let share = |model: &Model, step: u32| {
             let weight = f64::from(step) / f64::from(WEIGHTS);
@@ -37,15 +35,10 @@ pub(super) fn backward_shares() -> Result<Vec<Backward>, StudyError> {
         };
         let shares = (0..=WEIGHTS).map(|step| (step, share(&pooled, step)));
         let (step, greatest) =
-            shares.max_by(|a, b| a.1.total_cmp(&b.1)).expect("weights are tried");
+            shares.max_by(|a, b| a.1.total_cmp(&b.1)).expect("there are weights");
         Backward { first: name, pooled: greatest, separate: share(&separate, step) }
     };
-    Ok(names.enumerate().map(worst).collect())
-}
-
-fn model(mixing: Mixing) -> Result<Model, StudyError> {
-    let options = DyeOptions { mixing, ..DyeOptions::default() };
-    Ok(Model::Dyes(DyeModel::new(DyeSet::named("konig8")?, options)?))
+    names.into_iter().enumerate().map(worst).collect()
 }
 
 fn backward_share(material: &Mixture, colorimetry: &Colorimetry) -> f64 {

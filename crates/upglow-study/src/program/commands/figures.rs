@@ -1,17 +1,15 @@
-//! `upglow-study figures`: draws the paper's figures, and ours.
-
-use std::fmt::Write as _;
-use std::path::PathBuf;
+//! `upglow-study figures`: draws the figures of the paper, and our own.
 
 use serde::Serialize;
-use upglow_terminal::{Console, Failure, Report, files};
+use upglow_terminal::{Bar, Console, Failure, Report, files};
 
 use super::failure;
 use crate::args::FiguresArgs;
 use crate::cubes::Cubes;
-use crate::figures::{Figure, FigureOptions, figures};
+use crate::figures::{Figure, figures};
+use crate::raster;
 
-/// Pixels of a PNG for each of the SVG's: 170 mm at 192 pixels to the inch.
+/// Pixels of the PNG per pixel of the SVG: 192 pixels per inch.
 const PNG_SCALE: f32 = 2.0;
 
 #[derive(Clone, Debug, Serialize)]
@@ -29,13 +27,12 @@ struct FigureReport {
 }
 
 pub(super) fn run(args: &FiguresArgs, console: &Console) -> Result<(), Failure> {
-    // The folder itself is made when there is something to put in it.
+    // The folder is created later, when there is something to put in it.
     let probe = if args.out.is_dir() { args.out.join("figure.svg") } else { args.out.clone() };
     files::check_output(&probe)?;
-    let options = FigureOptions { only: args.only, display: args.display };
     let cubes = Cubes::new(args.resolution);
-    let drawn = console.work(args.threads, |bar| figures(&cubes, &options, bar))?;
-    let drawn = drawn.map_err(failure)?;
+    let draw = |bar: &Bar| figures(&cubes, args.only, args.display, bar);
+    let drawn = console.work(args.threads, draw)?.map_err(failure)?;
     files::make_folder(&args.out)?;
     let written = drawn.iter().map(|figure| write(args, figure)).collect::<Result<Vec<_>, _>>()?;
     let folder = args.out.display().to_string();
@@ -43,10 +40,10 @@ pub(super) fn run(args: &FiguresArgs, console: &Console) -> Result<(), Failure> 
 }
 
 fn write(args: &FiguresArgs, figure: &Figure) -> Result<FigureReport, Failure> {
-    let path = |ending: &str| -> PathBuf { args.out.join(format!("{}.{ending}", figure.name)) };
-    let (svg, png) = (path("svg"), path("png"));
+    let [svg, png] =
+        ["svg", "png"].map(|suffix| args.out.join(format!("{}.{suffix}", figure.name)));
     files::write(&svg, figure.svg.as_bytes())?;
-    files::write(&png, &figure.to_png(PNG_SCALE))?;
+    files::write(&png, &raster::rendered(&figure.svg, PNG_SCALE))?;
     Ok(FigureReport {
         number: figure.number,
         svg: svg.display().to_string(),
@@ -58,17 +55,9 @@ fn write(args: &FiguresArgs, figure: &Figure) -> Result<FigureReport, Failure> {
 impl Report for FiguresReport {
     fn text(&self) -> String {
         let mut text = String::new();
-        for figure in &self.figures {
-            // Writing to a string does not fail.
-            let _ =
-                writeln!(text, "Figure {}: {}\n{}\n", figure.number, figure.svg, figure.caption);
+        for FigureReport { number, svg, caption, .. } in &self.figures {
+            text += &format!("Figure {number}: {svg}\n{caption}\n\n");
         }
-        let _ = writeln!(
-            text,
-            "{} figures in {}, each as SVG and PNG",
-            self.figures.len(),
-            self.folder
-        );
-        text
+        text + &format!("{} figures in {}, each as SVG and PNG\n", self.figures.len(), self.folder)
     }
 }

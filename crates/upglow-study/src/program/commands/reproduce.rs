@@ -1,13 +1,13 @@
-//! `upglow-study reproduce`: the paper's claims, measured.
+//! `upglow-study reproduce`: measures the claims of the paper.
 
 use serde::Serialize;
 use upglow_terminal::{Console, Failure, Report, files};
 
 use super::failure;
 use crate::args::ReproduceArgs;
-use crate::claims::Claim;
+use crate::claims::{Claim, claims};
 use crate::cubes::Cubes;
-use crate::report::{reproduce, to_markdown};
+use crate::report::to_markdown;
 
 #[derive(Clone, Debug, Serialize)]
 struct ReproduceReport {
@@ -20,8 +20,8 @@ pub(super) fn run(args: &ReproduceArgs, console: &Console) -> Result<(), Failure
         files::check_output(path)?;
     }
     let cubes = Cubes::new(args.resolution);
-    let claims = console.work(args.threads, |bar| reproduce(&cubes, bar))?;
-    let report = ReproduceReport { resolution: args.resolution, claims: claims.map_err(failure)? };
+    let claims = console.work(args.threads, |bar| claims(&cubes, bar))?.map_err(failure)?;
+    let report = ReproduceReport { resolution: args.resolution, claims };
     if let Some(path) = &args.output {
         files::write(path, report.text().as_bytes())?;
     }

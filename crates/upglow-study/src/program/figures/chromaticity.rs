@@ -1,11 +1,12 @@
-//! The CIE 1931 chromaticity diagram.
+//! Draws the CIE 1931 chromaticity diagram.
 
-use crate::svg::{Anchor, Axis, Drawing, Frame, INK, MUTED, Rect, Stroke, Text};
 use upglow_study::ChromaticityDiagram;
 
-/// Where the locus is marked, nm; 540 would lie on the corner of AP1.
+use crate::svg::{Anchor, Axis, Drawing, Frame, INK, MUTED, Rect, Stroke, Text};
+
+/// Marked wavelengths of the locus, nm; 540 would overlap the corner of AP1.
 const MARKS_NM: [u32; 7] = [470, 480, 500, 520, 550, 570, 590];
-/// From the locus to the middle of a mark's number, mm.
+/// Distance from the locus to the middle of a mark's number, mm.
 const MARK_MM: f64 = 3.5;
 const TICK_MM: f64 = 0.8;
 
@@ -19,7 +20,7 @@ pub(crate) fn frame(rect: Rect) -> Frame {
     Frame { rect, x: axis("*x*", [-0.15, 0.85]), y: axis("*y*", [-0.05, 0.95]) }
 }
 
-/// Spectral locus, line of purples, the triangle of the contract's primaries, and white.
+/// Draws the spectral locus, the line of purples, the triangle of the primaries, and white.
 pub(crate) fn draw_landmarks(drawing: &mut Drawing, frame: &Frame, diagram: &ChromaticityDiagram) {
     let ChromaticityDiagram { locus, primaries, white } = diagram;
     let ends = [locus[0].1, locus[locus.len() - 1].1].map(|xy| frame.point(xy));
@@ -34,7 +35,7 @@ pub(crate) fn draw_landmarks(drawing: &mut Drawing, frame: &Frame, diagram: &Chr
     draw_plus(drawing, white);
 }
 
-/// A key to triangle and white, in the corner that the locus leaves free.
+/// Draws a key to triangle and white, in the corner outside the locus.
 pub(crate) fn draw_key(drawing: &mut Drawing, frame: &Frame, triangle: &str) {
     let [x, y] = frame.point([0.58, 0.07]);
     drawing.line([x, y - 0.7], [x + 4.0, y - 0.7], TRIANGLE);
@@ -50,7 +51,7 @@ fn draw_plus(drawing: &mut Drawing, [x, y]: [f64; 2]) {
     drawing.line([x, y - ARM_MM], [x, y + ARM_MM], stroke);
 }
 
-/// A tick across the locus, and the wavelength outside.
+/// Draws a tick at the locus, and the wavelength outside of it.
 fn draw_mark(drawing: &mut Drawing, nm: u32, at: [f64; 2], white: [f64; 2]) {
     let away = [at[0] - white[0], at[1] - white[1]];
     let length = away[0].hypot(away[1]);

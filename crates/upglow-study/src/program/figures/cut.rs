@@ -1,8 +1,8 @@
-//! The part of a layer that a panel shows.
+//! The part of a layer that is drawn in a panel.
 
 use upglow_study::Layer;
 
-/// A rectangle of the points of a layer, both ends included.
+/// A rectangular part of a layer.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cut<'l> {
     pub(crate) layer: &'l Layer,
@@ -13,7 +13,7 @@ pub(crate) struct Cut<'l> {
 }
 
 impl<'l> Cut<'l> {
-    /// The part with red and green of at least `low` and at most `high`, by whole points.
+    /// The part between the points nearest to these limits, each from low to high.
     pub(crate) fn of(layer: &'l Layer, red: [f64; 2], green: [f64; 2]) -> Self {
         let index = |value| Layer::nearest_node(layer.side, value);
         let [red, green] = [red, green].map(|[low, high]| [index(low), index(high)]);
@@ -35,7 +35,7 @@ impl<'l> Cut<'l> {
         self.green[1] - self.green[0] + 1
     }
 
-    /// The points' numbers in the layer as a picture has them: greatest green first.
+    /// Indices of the points in the order of a picture's pixels: greatest green first.
     pub(crate) fn picture(&self) -> impl Iterator<Item = usize> + '_ {
         let [first, last] = self.green;
         let row = move |green: usize| {
@@ -44,7 +44,7 @@ impl<'l> Cut<'l> {
         (first..=last).rev().flat_map(row)
     }
 
-    /// Mean CIEDE2000, and the share within 1, of the points.
+    /// Mean CIEDE2000 of the points, and the share of points within 1.
     pub(crate) fn errors(&self) -> (f64, f64) {
         let found: Vec<f64> = self.picture().map(|i| self.layer.de2000[i]).collect();
         let count = found.len() as f64;
@@ -61,7 +61,7 @@ mod tests {
 
     #[test]
     fn pictures_start_with_the_greatest_green() {
-        let cube = Cubes::new(4).get(StudyCube::Reference, &Unwatched).unwrap();
+        let cube = Cubes::new(4).get(StudyCube::REFERENCE, &Unwatched).unwrap();
         let layer = Layer::of_nodes(&cube, 0);
         let cut = Cut::of(&layer, [1.0 / 3.0, 1.0], [0.0, 1.0 / 3.0]);
         assert_eq!((cut.columns(), cut.rows()), (3, 2));

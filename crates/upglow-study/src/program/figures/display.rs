@@ -1,23 +1,23 @@
-//! From colors of the cube to colors of the page.
+//! Conversion from colors of a cube to colors of the page.
 
 use upglow_color::{Colorimetry, Contract, LinearRgb, Matrix3, RgbSpace, choices, srgb_encoded};
 use upglow_svg::byte;
 
-/// How RGB of the cube's space is shown.
+/// How RGB colors of a cube are shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub(crate) enum Display {
-    /// The numbers are taken for linear sRGB, as in the paper: hues are wrong, but no color of the
-    /// cube is out of the page's gamut, so every artifact shows.
+    /// The values are treated as linear sRGB, as in the paper: hues are wrong, but every color of the
+    /// cube is inside the page's gamut, so every artifact is visible.
     #[default]
     AsSrgb,
-    /// The colors are converted to sRGB; what sRGB cannot hold is cut off by channel.
+    /// Colors are converted to sRGB and clipped to its gamut by channel.
     Correct,
 }
 
 choices!(Display, "display", AsSrgb = "as-srgb", Correct = "correct");
 
 impl Display {
-    /// What a caption says about it.
+    /// The sentence for captions.
     pub(crate) fn note(self) -> &'static str {
         match self {
             Self::AsSrgb => "ACEScg triples are shown as sRGB.",
@@ -25,7 +25,7 @@ impl Display {
         }
     }
 
-    /// The way from RGB of a contract to the page.
+    /// A converter from RGB of a contract to the page.
     pub(crate) fn painter(self, colorimetry: &Colorimetry) -> Painter {
         let srgb_from_rgb = match self {
             Self::AsSrgb => Matrix3::IDENTITY,
@@ -39,14 +39,14 @@ impl Display {
     }
 }
 
-/// Turns colors into the page's bytes.
+/// Converts colors to sRGB bytes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Painter {
     srgb_from_rgb: Matrix3,
 }
 
 impl Painter {
-    /// The sRGB bytes of a color, cut off at the page's gamut.
+    /// The sRGB bytes of a color, clipped to the gamut.
     pub(crate) fn paint(self, rgb: LinearRgb) -> [u8; 3] {
         (self.srgb_from_rgb * rgb.0).map(|v| byte(255.0 * srgb_encoded(v.clamp(0.0, 1.0))))
     }
@@ -58,7 +58,7 @@ mod tests {
     use upglow_color::Grid;
 
     #[test]
-    fn white_and_black_are_those_of_the_page() {
+    fn white_and_black_stay_white_and_black() {
         let colorimetry = Contract::default().on(Grid::FIT);
         for display in [Display::AsSrgb, Display::Correct] {
             let painter = display.painter(&colorimetry);
@@ -68,7 +68,7 @@ mod tests {
     }
 
     #[test]
-    fn a_dull_green_is_greener_on_the_page_than_its_numbers() {
+    fn a_dull_green_is_greener_when_converted() {
         let colorimetry = Contract::default().on(Grid::FIT);
         let [as_srgb, correct] = [Display::AsSrgb, Display::Correct]
             .map(|display| display.painter(&colorimetry).paint(LinearRgb([0.3, 0.5, 0.3])));
@@ -76,7 +76,7 @@ mod tests {
     }
 
     #[test]
-    fn names_come_back() {
+    fn names_are_read_back() {
         for display in [Display::AsSrgb, Display::Correct] {
             assert_eq!(display.to_string().parse(), Ok(display));
         }

@@ -1,13 +1,13 @@
 //! Figure 2: the dyes.
 
-use upglow::Model;
+use upglow::Mixing;
 use upglow_color::{Contract, Grid, Spectrum};
+use upglow_fit::BuildError;
+use upglow_study::{ChromaticityDiagram, DyeSpectra, dye_spectra};
 
 use super::{Figure, Studio, chromaticity};
-use crate::cubes::StudyCube;
-use crate::error::StudyError;
+use crate::cubes::paper_dyes;
 use crate::svg::{ABSORPTION, Anchor, Axis, Drawing, EMISSION, Frame, INK, Rect, Stroke, Text};
-use upglow_study::{ChromaticityDiagram, DyeSpectra, dye_spectra};
 
 /// The dyes whose spectra are shown, counted from 1 as in the paper.
 const SHOWN: [usize; 2] = [2, 6];
@@ -17,10 +17,8 @@ const SPECTRA_LEFT_MM: f64 = 97.0;
 const SPECTRA_MM: [f64; 2] = [70.0, 27.5];
 const RANGE_NM: [f64; 2] = [300.0, 750.0];
 
-pub(super) fn figure_2(_: &Studio<'_>) -> Result<Figure, StudyError> {
-    let Model::Dyes(model) = StudyCube::PAPER.model()? else {
-        unreachable!("the paper's cube has dyes");
-    };
+pub(super) fn figure_2(_: &Studio<'_>) -> Result<Figure, BuildError> {
+    let model = paper_dyes(Mixing::default());
     let contract = Contract::default();
     let dyes = dye_spectra(&model, &contract.observer);
     let names: Vec<String> = dyes.iter().map(|dye| dye.name.replace('_', " ")).collect();
@@ -60,15 +58,15 @@ fn draw_diagram(
     names: &[String],
 ) {
     let frame = chromaticity::frame(DIAGRAM);
-    let places: Vec<[f64; 2]> = dyes
+    let points: Vec<[f64; 2]> = dyes
         .iter()
         .map(|dye| frame.point(dye.emission_xy.expect("a dye's emission is visible")))
         .collect();
     chromaticity::draw_landmarks(drawing, &frame, &ChromaticityDiagram::of(contract));
-    let ring = places.iter().chain(&places[..1]).copied();
+    let ring = points.iter().chain(&points[..1]).copied();
     drawing.polyline(ring, Stroke::solid(EMISSION, 0.25));
     let center = frame.point([1.0 / 3.0, 1.0 / 3.0]);
-    for (number, at) in (1..).zip(&places) {
+    for (number, at) in (1..).zip(&points) {
         drawing.dot(*at, 0.9, EMISSION, Stroke::solid("#ffffff", 0.2));
         draw_number(drawing, number, *at, center);
     }
@@ -78,7 +76,7 @@ fn draw_diagram(
     frame.draw_title(drawing, "[a] emission of the eight dyes", "");
 }
 
-/// What the dyes' numbers stand for, from a point of the page down.
+/// Lists the names of the dyes and their numbers, downward from a point of the page.
 fn draw_names(drawing: &mut Drawing, [left, top]: [f64; 2], names: &[String]) {
     const LINE_MM: f64 = 3.1;
     for (index, name) in (0_u32..).zip(names) {
@@ -89,7 +87,7 @@ fn draw_names(drawing: &mut Drawing, [left, top]: [f64; 2], names: &[String]) {
     }
 }
 
-/// The dye's number beside its dot, towards the middle, where the locus is not.
+/// Draws a dye's number beside its dot, toward the middle of the diagram, away from the locus.
 fn draw_number(drawing: &mut Drawing, number: u32, at: [f64; 2], center: [f64; 2]) {
     const APART_MM: f64 = 2.4;
     let inward = [center[0] - at[0], center[1] - at[1]];

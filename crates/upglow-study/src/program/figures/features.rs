@@ -1,14 +1,14 @@
-//! Figure 4: shift, width and slope.
+//! Figure 4: the shift, width and slope of a reflectance.
 
 use upglow::{Features, Vertex};
+use upglow_fit::BuildError;
 
 use super::{Figure, Studio};
-use crate::error::StudyError;
 use crate::svg::{
     ABSORPTION, Anchor, Axis, Drawing, EMISSION, Frame, INK, MUTED, Rect, Stroke, Text,
 };
 
-/// The n-shaped reflectance that carries the labels.
+/// The n-shaped reflectance that is labeled.
 const SHAPE: Features = Features { shift_nm: 530.0, width_nm: 75.0, slope_per_nm: -0.008 };
 const HEIGHT_MM: f64 = 74.0;
 const PANEL_TOP_MM: f64 = 6.0;
@@ -24,7 +24,7 @@ const GUIDE: Stroke = Stroke::solid(MUTED, 0.2).dashed("0.5 0.6");
 const TANGENT: Stroke = Stroke::solid(EMISSION, 0.45);
 const ARROW: Stroke = Stroke::solid(INK, 0.25);
 
-pub(super) fn figure_4(_: &Studio<'_>) -> Result<Figure, StudyError> {
+pub(super) fn figure_4(_: &Studio<'_>) -> Result<Figure, BuildError> {
     let opposite = Features { slope_per_nm: -SHAPE.slope_per_nm, ..SHAPE };
     let [shape, other] = [SHAPE, opposite].map(|f| f.to_vertex().expect("the slope is not zero"));
     let [parabola, reflectance] = frames();
@@ -54,7 +54,7 @@ fn frames() -> [Frame; 2] {
     ]
 }
 
-/// The curve of `value` over the frame's wavelengths.
+/// Draws `value` over the wavelengths of the frame.
 fn draw_curve(drawing: &mut Drawing, frame: &Frame, value: impl Fn(f64) -> f64, stroke: Stroke) {
     let nm = (0..=300).map(|i| RANGE_NM[0] + f64::from(i));
     drawing.clipped(frame.rect, |drawing| {
@@ -102,14 +102,14 @@ fn draw_reflectance(drawing: &mut Drawing, frame: &Frame, shape: Vertex, other: 
     frame.draw_title(drawing, "[b] reflectance", "");
 }
 
-/// A line down from a point of the curve, and a dot on the point.
+/// Draws a dot on a point of the curve, and a line from there down to the axis.
 fn draw_guide(drawing: &mut Drawing, frame: &Frame, nm: f64, value: f64) {
     let at = frame.point([nm, value]);
     drawing.line([at[0], frame.rect.bottom()], at, GUIDE);
     drawing.dot(at, 0.8, ABSORPTION, Stroke::solid("#ffffff", 0.2));
 }
 
-/// Arrow and name of the width at height `value`, and the name of the shift under it.
+/// Draws the arrow and label of the width at height `value`, and the label of the shift below it.
 fn draw_width(drawing: &mut Drawing, frame: &Frame, value: f64) {
     let Features { shift_nm, width_nm, .. } = SHAPE;
     let [from, to] = [shift_nm, shift_nm + width_nm].map(|nm| frame.point([nm, value]));

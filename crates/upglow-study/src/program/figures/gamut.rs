@@ -1,42 +1,39 @@
-//! Figure 1: fluorescence by formula against eight dyes.
+//! Figure 1: analytic fluorescence and eight dyes.
 
 use std::sync::Arc;
 
 use upglow::Cube;
-use upglow_color::{Colorimetry, Grid, Xyz};
-use upglow_fit::CubeSummary;
+use upglow_color::Grid;
+use upglow_fit::{BuildError, CubeSummary};
+use upglow_study::{ChromaticityDiagram, Layer, node_colors};
 
 use super::cut::Cut;
 use super::display::Painter;
 use super::sheet::{Sheet, draw_layer, errors_text};
 use super::{Figure, Studio, chromaticity, percent};
-use crate::cubes::StudyCube;
-use crate::error::StudyError;
+use crate::cubes::{PAPER_SWEEPS, StudyCube};
 use crate::raster;
 use crate::svg::{Drawing, Rect};
-use upglow_study::{ChromaticityDiagram, Layer, node_colors};
 
 /// Blue of the layers shown.
 const BLUES: [f64; 2] = [5.0 / 31.0, 23.0 / 31.0];
-/// Sweeps of both cubes, as in the paper.
-const SWEEPS: u32 = 4;
-/// Only colors with X + Y + Z of at least this are in the diagram.
+/// Least X + Y + Z of the colors in the diagram.
 const BRIGHT: f64 = 1.5;
-/// Radius of a color in the diagram, mm; larger hides its neighbors.
+/// Radius of a color's dot in the diagram, mm; larger dots hide their neighbors.
 const DOT_MM: f64 = 0.28;
-/// Pixels of the dots' picture to a millimeter: 600 to an inch.
+/// Pixels per millimeter of the picture with the dots: about 600 per inch.
 const PIXELS_PER_MM: f64 = 24.0;
 
-/// One row of the figure: a cube and its panels' letters.
+/// One row of the figure: a cube, and the letters of its panels.
 struct Row {
     model: &'static str,
     letters: [&'static str; 3],
     cube: Arc<Cube>,
 }
 
-pub(super) fn figure_1(studio: &Studio<'_>) -> Result<Figure, StudyError> {
+pub(super) fn figure_1(studio: &Studio<'_>) -> Result<Figure, BuildError> {
     let get = |which| studio.cubes.get(which, studio.watch);
-    let analytic = get(StudyCube::PaperAnalytic { sweeps: SWEEPS })?;
+    let analytic = get(StudyCube::PaperAnalytic)?;
     let rows = [
         Row { model: "analytic", letters: ["a", "c", "e"], cube: analytic },
         Row { model: "eight dyes", letters: ["b", "d", "f"], cube: get(StudyCube::PAPER)? },
@@ -46,7 +43,7 @@ pub(super) fn figure_1(studio: &Studio<'_>) -> Result<Figure, StudyError> {
     let mut errors = Vec::new();
     let mut bright = Vec::new();
     for (index, row) in rows.iter().enumerate() {
-        let painter = studio.display.painter(&row.cube.contract().on(Grid::FIT));
+        let painter = studio.painter();
         errors.extend(draw_layers(&mut drawing, &sheet, index, row, painter));
         bright.push(draw_chromaticities(&mut drawing, sheet.rect(index, 2), row, painter));
     }
@@ -60,7 +57,7 @@ fn caption(studio: &Studio<'_>, rows: &[Row; 2], errors: &[String], bright: &[us
     let within = summaries.map(|s| percent(s.within_1 as f64 / s.nodes as f64));
     format!(
         "Analytic (a, c, e) and dye-based (b, d, f) fluorescence without interpolation, by the \
-         paper's method with ΔE00 and {SWEEPS} sweeps. Layers of the {n}³ cube near B = {:.3} (a, b) and \
+         paper's method with ΔE00 and {PAPER_SWEEPS} sweeps. Layers of the {n}³ cube near B = {:.3} (a, b) and \
          B = {:.3} (c, d): {}. Chromaticities of all nodes with X + Y + Z ≥ {BRIGHT} (e: {} nodes, f: \
          {}), in the CIE 1931 diagram with the AP1 triangle. Over the whole cube the mean ΔE00 is \
          {:.2} against {:.2}, and {} against {} of the nodes are within 1. Slopes are at most \
@@ -87,7 +84,8 @@ fn draw_layers(
     row: &Row,
     painter: Painter,
 ) -> Vec<String> {
-    // Seen from here each row is the last: the third column, with other axes, lies between.
+    // Each row is treated as the last so that it has its own numbers: the diagrams in the third
+    // column need the space below the row anyway.
     let sheet = Sheet { rows: index + 1, ..*sheet };
     let panels = BLUES.into_iter().zip(row.letters).enumerate();
     let drawn = panels.map(|(column, (blue, letter))| {
@@ -104,7 +102,8 @@ fn draw_layers(
 fn draw_chromaticities(drawing: &mut Drawing, rect: Rect, row: &Row, painter: Painter) -> usize {
     let frame = chromaticity::frame(rect);
     let colorimetry = row.cube.contract().on(Grid::FIT);
-    let colors = bright_colors(&row.cube, &colorimetry);
+    let mut colors = node_colors(&row.cube, &colorimetry);
+    colors.retain(|color| color.0.iter().sum::<f64>() >= BRIGHT);
     let dots: Vec<([f32; 2], [u8; 3])> = colors
         .iter()
         .filter_map(|color| {
@@ -125,14 +124,7 @@ fn draw_chromaticities(drawing: &mut Drawing, rect: Rect, row: &Row, painter: Pa
     colors.len()
 }
 
-/// The colors of the nodes that are bright enough for the diagram.
-fn bright_colors(cube: &Cube, colorimetry: &Colorimetry) -> Vec<Xyz> {
-    let mut colors = node_colors(cube, colorimetry);
-    colors.retain(|color| color.0.iter().sum::<f64>() >= BRIGHT);
-    colors
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "a place in a picture")]
+#[expect(clippy::cast_possible_truncation, reason = "pixel coordinates need no more precision")]
 fn single(value: f64) -> f32 {
     value as f32
 }
@@ -140,7 +132,7 @@ fn single(value: f64) -> f32 {
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "a picture's side is positive and small"
+    reason = "the side of a picture is positive and small"
 )]
 fn pixels(value: f64) -> u32 {
     value.round() as u32

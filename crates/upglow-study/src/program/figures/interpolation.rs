@@ -1,25 +1,24 @@
-//! Figures 8 and 9: what stands between the nodes.
+//! Figures 8 and 9: how colors between the nodes are interpolated.
 
 use upglow::Interpolation;
-use upglow_color::Grid;
+use upglow_fit::BuildError;
+use upglow_study::Layer;
 
 use super::cut::Cut;
 use super::display::Painter;
-use super::sheet::{Sheet, draw_points, errors_text, layers_page};
+use super::sheet::{LETTERS, Sheet, draw_points, errors_text, layers_page};
 use super::{Figure, Studio, percent};
 use crate::cubes::StudyCube;
-use crate::error::StudyError;
 use crate::svg::{Anchor, Drawing, PAGE_MM, Rect, Stroke, Text, error_color};
-use upglow_study::Layer;
 
 const BLUE: f64 = 0.7;
 /// Points along each axis of a picture for each node of the cube.
 const POINTS_PER_NODE: usize = 8;
 
-/// The errors that the darkest color stands for, ΔE00.
+/// The error that the darkest color stands for, ΔE00.
 const GREATEST_ERROR: f64 = 10.0;
 
-/// The paper's four, in its order.
+/// The four interpolations of the paper, in its order.
 const PAPERS: [(Interpolation, &str); 4] = [
     (Interpolation::None, "none"),
     (Interpolation::Features, "features"),
@@ -27,51 +26,41 @@ const PAPERS: [(Interpolation, &str); 4] = [
     (Interpolation::Coefficients, "coefficients"),
 ];
 const OURS: (Interpolation, &str) = (Interpolation::Blend, "blend");
-const LETTERS: [&str; 10] = ["a", "b", "c", "d", "e", "f", "g", "h", "i", "j"];
 
-fn layer(studio: &Studio<'_>, interpolation: Interpolation) -> Result<Layer, StudyError> {
+fn layer(studio: &Studio<'_>, interpolation: Interpolation) -> Result<Layer, BuildError> {
     studio.go_on()?;
     let cube = studio.cubes.get(StudyCube::PaperFeatures, studio.watch)?;
     let side = POINTS_PER_NODE * cube.resolution();
     Ok(Layer::between_nodes(&cube, BLUE, side, interpolation))
 }
 
-pub(super) fn figure_8(studio: &Studio<'_>) -> Result<Figure, StudyError> {
+pub(super) fn figure_8(studio: &Studio<'_>) -> Result<Figure, BuildError> {
     let layers = PAPERS.map(|(interpolation, _)| layer(studio, interpolation));
     let layers: Vec<Layer> = layers.into_iter().collect::<Result<_, _>>()?;
-    let lettered = || LETTERS.into_iter().zip(PAPERS).zip(&layers);
-    let panels: Vec<_> = lettered()
-        .map(|((letter, (_, name)), layer)| (format!("[{letter}] {name}"), Cut::whole(layer)))
-        .collect();
-    let parts: Vec<String> = lettered()
-        .map(|((letter, (_, name)), layer)| {
-            format!("({letter}) {name}: {}", errors_text(&Cut::whole(layer)))
-        })
-        .collect();
+    let panel =
+        |((_, name), layer): ((_, &str), _)| (name.to_owned(), name.to_owned(), Cut::whole(layer));
+    let panels: Vec<_> = PAPERS.into_iter().zip(&layers).map(panel).collect();
+    let (drawing, parts) = layers_page(studio, &Sheet::shared(2, 2), &panels);
     let caption = format!(
         "Interpolation at B = {BLUE}, {:.1} steps of nodes from 0, in the {n}³ cube fitted in \
-         features; {side} × {side} colors. {}. {}",
+         features; {side} × {side} colors. {parts}. {}",
         BLUE * (studio.cubes.resolution() - 1) as f64,
-        parts.join("; "),
         studio.display.note(),
         n = studio.cubes.resolution(),
         side = layers[0].side,
     );
-    let painter = studio.display.painter(&upglow_color::Contract::default().on(Grid::FIT));
-    let drawing = layers_page(&Sheet::shared(2, 2), &panels, painter);
     Ok(Figure::new(8, "interpolated-layers", drawing, caption))
 }
 
-pub(super) fn figure_9(studio: &Studio<'_>) -> Result<Figure, StudyError> {
+pub(super) fn figure_9(studio: &Studio<'_>) -> Result<Figure, BuildError> {
     let sheet =
         Sheet { gap_mm: 3.0, title_mm: 6.0, below_mm: 0.0, foot_mm: 19.5, ..Sheet::shared(5, 2) };
-    let painter = studio.display.painter(&upglow_color::Contract::default().on(Grid::FIT));
     let mut drawing = Drawing::new(sheet.height_mm());
     let mut parts = Vec::new();
     let mut exact = 0.0;
     for (column, (interpolation, name)) in PAPERS.into_iter().chain([OURS]).enumerate() {
         let layer = layer(studio, interpolation)?;
-        draw_column(&mut drawing, &sheet, column, name, &layer, painter);
+        draw_column(&mut drawing, &sheet, column, name, &layer, studio.painter());
         exact = share(&layer.has_exact_nodes);
         let (errors, worst) = (errors_text(&Cut::whole(&layer)), worst_between_exact(&layer));
         parts.push(format!("{name}: {errors}, at most {worst:.2} between exact nodes"));
@@ -90,7 +79,7 @@ pub(super) fn figure_9(studio: &Studio<'_>) -> Result<Figure, StudyError> {
     Ok(Figure::new(9, "blend", drawing, caption))
 }
 
-/// A layer's colors, and its errors below them.
+/// Draws a layer's colors, and its errors below them.
 fn draw_column(
     drawing: &mut Drawing,
     sheet: &Sheet,
@@ -109,7 +98,7 @@ fn draw_column(
     errors.draw_title(drawing, &title, "");
 }
 
-/// The greatest CIEDE2000 where all nodes that take part are exact; 0 where none are.
+/// The greatest CIEDE2000 of the points whose nodes are all exact; 0 if there are none.
 fn worst_between_exact(layer: &Layer) -> f64 {
     let pairs = layer.de2000.iter().zip(&layer.has_exact_nodes);
     pairs.filter(|(_, exact)| **exact).map(|(d, _)| *d).fold(0.0, f64::max)

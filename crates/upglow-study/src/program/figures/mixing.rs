@@ -1,13 +1,13 @@
-//! Figure 5: what lies between two reflectances.
+//! Figure 5: three kinds of interpolation between two reflectances.
 
 use upglow::Features;
 use upglow_color::{Contract, Grid, Lab};
+use upglow_fit::BuildError;
+use upglow_study::Mixing;
 
 use super::sheet::swatch;
 use super::{Figure, Studio};
-use crate::error::StudyError;
 use crate::svg::{Anchor, Axis, Drawing, Frame, MUTED, Rect, Stroke, Text, WEIGHTS};
-use upglow_study::Mixing;
 
 /// The two ends: a blue and an orange, both n-shaped.
 const FROM: Features = Features { shift_nm: 450.0, width_nm: 45.0, slope_per_nm: -0.009 };
@@ -19,11 +19,11 @@ const PLOT_MM: [f64; 2] = [119.0, 35.0];
 const LEFT_MM: f64 = 11.0;
 const KEY_LEFT_MM: f64 = 136.0;
 const SWATCH_MM: [f64; 2] = [18.0, 6.2];
-/// Numbers and label of the last plot.
+/// Space below the last plot, for numbers and a label.
 const FOOT_MM: f64 = 8.2;
 const RANGE_NM: [f64; 2] = [380.0, 720.0];
 
-/// Shares of the second end.
+/// Weights of the second end.
 const SHARES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
 const ROWS: [(Mixing, &str); 3] = [
@@ -32,19 +32,16 @@ const ROWS: [(Mixing, &str); 3] = [
     (Mixing::Features, "[c] features *z*, *w*, *s*"),
 ];
 
-/// The reflectance with a share of the second end.
-fn sample(way: Mixing, share: f64) -> Vec<f64> {
-    way.sample([FROM, TO], share).expect("the slopes have one sign and are not zero")
-}
-
-pub(super) fn figure_5(studio: &Studio<'_>) -> Result<Figure, StudyError> {
+pub(super) fn figure_5(studio: &Studio<'_>) -> Result<Figure, BuildError> {
     let colorimetry = Contract::default().on(Grid::FINE);
     let painter = studio.display.painter(&colorimetry);
     let mut drawing = Drawing::new(ROW_TOP_MM + 2.0 * ROW_STEP_MM + PLOT_MM[1] + FOOT_MM);
     let mut halves = Vec::new();
-    for (row, (way, title)) in (0_u32..).zip(ROWS) {
+    for (row, (mixing, title)) in (0_u32..).zip(ROWS) {
         let frame = frame(row);
-        let spectra = SHARES.map(|share| sample(way, share));
+        let spectra = SHARES.map(|share| {
+            mixing.sample([FROM, TO], share).expect("the slopes have one sign and are not zero")
+        });
         let colors = spectra.each_ref().map(|r| colorimetry.xyz_from_reflectance(r.clone()));
         draw_spectra(&mut drawing, &frame, &spectra);
         frame.draw_title(&mut drawing, title, "");
@@ -70,7 +67,7 @@ fn end_text(Features { shift_nm, width_nm, slope_per_nm }: Features) -> String {
     format!("z = {shift_nm:.0} nm, w = {width_nm:.0} nm, s = −{:.3}/nm", -slope_per_nm)
 }
 
-/// Where a reflectance is greatest, how great, and its color.
+/// The peak of a reflectance, and its color.
 fn half_text(samples: &[f64], color: Lab) -> String {
     let peak = Grid::FINE.wavelengths_nm().zip(samples).max_by(|a, b| a.1.total_cmp(b.1));
     let (nm, value) = peak.expect("the grid has wavelengths");
@@ -106,7 +103,7 @@ fn draw_spectra(drawing: &mut Drawing, frame: &Frame, spectra: &[Vec<f64>; 5]) {
     frame.draw_axes(drawing);
 }
 
-/// For each weight its line, itself and its color.
+/// Draws for each weight its line style, its value and its color.
 fn draw_key(drawing: &mut Drawing, frame: &Frame, colors: [[u8; 3]; 5]) {
     let [width, height] = SWATCH_MM;
     let step = (PLOT_MM[1] - height) / 4.0;

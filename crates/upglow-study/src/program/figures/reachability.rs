@@ -1,24 +1,23 @@
-//! Figure 10: what any material can show.
+//! Figure 10: which colors any material can match.
 
 use upglow_color::{Contract, StandingKind};
+use upglow_fit::BuildError;
 use upglow_study::standing_layer;
 use upglow_svg::hex;
 
-use super::sheet::{Sheet, swatch};
+use super::sheet::{LETTERS, Sheet, swatch};
 use super::{Figure, Studio, percent};
-use crate::error::StudyError;
 use crate::raster;
 use crate::svg::{Axis, Drawing, Frame, Rect, STANDINGS, Text};
 
-/// The layers shown, in 31sts, and what is written above them.
+/// Blue of the layers shown, in 31sts, and its text in their titles.
 const BLUES: [(f64, &str); 5] =
     [(0.0, "0"), (5.0, "5/31"), (15.0, "15/31"), (23.0, "23/31"), (31.0, "1")];
-const LETTERS: [&str; 6] = ["a", "b", "c", "d", "e", "f"];
 const NAMES: [&str; 3] = ["some reflectance", "only fluorescence", "no material"];
-/// Points of a layer's picture from node to node.
+/// Points of a layer's picture per step between nodes.
 const POINTS_PER_STEP: usize = 4;
 
-pub(super) fn figure_10(studio: &Studio<'_>) -> Result<Figure, StudyError> {
+pub(super) fn figure_10(studio: &Studio<'_>) -> Result<Figure, BuildError> {
     let contract = Contract::default();
     let nodes = studio.cubes.resolution();
     let side = POINTS_PER_STEP * (nodes - 1) + 1;
@@ -68,7 +67,7 @@ fn draw_layer(
     let (x, y) = (axis("red *R*"), axis("green *G*"));
     let frame = Frame { rect: sheet.rect(row, column), x, y };
     let side = standings.len().isqrt();
-    // A picture begins with the greatest green.
+    // The top row of the picture is the greatest green.
     let rows = standings.chunks(side).rev().flatten();
     let colors: Vec<[u8; 3]> = rows.map(|&standing| STANDINGS[standing as usize]).collect();
     drawing.pixels(frame.rect, &raster::png(side, &colors));
@@ -76,7 +75,7 @@ fn draw_layer(
     frame.draw_title(drawing, title, "");
 }
 
-/// Shares over blue, one area above the other.
+/// Draws the shares over blue as stacked areas.
 fn draw_shares(drawing: &mut Drawing, rect: Rect, layers: &[Vec<StandingKind>]) {
     let frame = Frame {
         rect,
@@ -85,7 +84,7 @@ fn draw_shares(drawing: &mut Drawing, rect: Rect, layers: &[Vec<StandingKind>]) 
     };
     let last = (layers.len() - 1) as f64;
     let found: Vec<[f64; 3]> = layers.iter().map(shares).collect();
-    // From the whole down: each area is drawn over the one that it leaves room for.
+    // Each area starts at zero and covers the lower part of the one drawn before.
     for (standing, color) in STANDINGS.iter().enumerate().rev() {
         let height = |shares: &[f64; 3]| 100.0 * shares[..=standing].iter().sum::<f64>();
         let upper = (0_u32..).zip(&found).map(|(i, s)| [f64::from(i) / last, height(s)]);
@@ -97,7 +96,7 @@ fn draw_shares(drawing: &mut Drawing, rect: Rect, layers: &[Vec<StandingKind>]) 
     frame.draw_title(drawing, "[f] all layers", "");
 }
 
-/// A key to the colors, with shares over all nodes, below the columns.
+/// Draws a key to the colors, with shares over all nodes, below the columns.
 fn draw_legend(drawing: &mut Drawing, sheet: &Sheet, all: &[String; 3]) {
     let baseline = sheet.height_mm() - 2.6;
     for (i, (name, share)) in NAMES.into_iter().zip(all).enumerate() {
@@ -108,7 +107,7 @@ fn draw_legend(drawing: &mut Drawing, sheet: &Sheet, all: &[String; 3]) {
     }
 }
 
-/// Shares of each kind, in their order.
+/// The share of each kind, in the order of [`StandingKind`].
 fn shares<'k>(kinds: impl IntoIterator<Item = &'k StandingKind>) -> [f64; 3] {
     let mut counts = [0.0; 3];
     kinds.into_iter().for_each(|&kind| counts[kind as usize] += 1.0);

@@ -1,30 +1,34 @@
-//! Panels of equal size in rows and columns, and layers of a cube in them.
+//! Pages of square panels, and layers of a cube drawn in them.
 
 use upglow_svg::hex;
 
-use crate::figures::cut::Cut;
-use crate::figures::display::Painter;
+use super::cut::Cut;
+use super::display::Painter;
+use super::{Studio, percent};
 use crate::raster;
 use crate::svg::{Axis, Drawing, Frame, PAGE_MM, Rect, Stroke};
 
-/// Where the panels of a page lie: as large as the page's width allows.
+/// The letters of panels.
+pub(crate) const LETTERS: [&str; 10] = ["a", "b", "c", "d", "e", "f", "g", "h", "i", "j"];
+
+/// The arrangement of panels on a page; they are as large as its width allows.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sheet {
     pub(crate) columns: usize,
     pub(crate) rows: usize,
-    /// Room left of the first column: numbers and a label.
+    /// Space left of the first column, for numbers and a label.
     pub(crate) left_mm: f64,
-    /// Room between columns.
+    /// Space between columns.
     pub(crate) gap_mm: f64,
-    /// Room above each row: its titles.
+    /// Space above each row, for its titles.
     pub(crate) title_mm: f64,
-    /// Room below each row but the last: its numbers, where it has any.
+    /// Space below each row but the last, for its numbers.
     pub(crate) below_mm: f64,
-    /// Room below the last row: numbers, a label and what else there is.
+    /// Space below the last row, for numbers, a label and a legend.
     pub(crate) foot_mm: f64,
 }
 
-/// Room right of the last column: half the number of the last tick.
+/// Space right of the last column, for half the number of the last tick.
 const RIGHT_MM: f64 = 2.0;
 
 impl Sheet {
@@ -63,7 +67,7 @@ impl Sheet {
         }
     }
 
-    /// The frame of a panel over red and green: only the outer ones have words.
+    /// The frame of a panel over red and green. Only the outer panels have numbers and labels.
     pub(crate) fn layer_frame(&self, row: usize, column: usize, cut: &Cut<'_>) -> Frame {
         let [x, y] = layer_axes(cut);
         Frame {
@@ -85,10 +89,10 @@ fn layer_axes(cut: &Cut<'_>) -> [Axis; 2] {
     [axis("red *R*", cut.red), axis("green *G*", cut.green)]
 }
 
-/// Up to this many columns each point is a cell of the drawing; beyond, a pixel of a picture.
+/// Layers of up to this many columns are drawn as cells, larger ones as an embedded picture.
 const MOST_CELLS: usize = 40;
 
-/// The cells of a layer, in the colors that `paint` gives to the points of these numbers.
+/// Draws the points of a layer in the colors that `paint` returns for their indices.
 pub(crate) fn draw_points(
     drawing: &mut Drawing,
     frame: &Frame,
@@ -104,7 +108,7 @@ pub(crate) fn draw_points(
     frame.draw_axes(drawing);
 }
 
-/// A panel with a layer's colors, and its errors under the title.
+/// Draws a layer's colors, and its errors under the title.
 pub(crate) fn draw_layer(
     drawing: &mut Drawing,
     frame: &Frame,
@@ -113,36 +117,36 @@ pub(crate) fn draw_layer(
     painter: Painter,
 ) {
     draw_points(drawing, frame, cut, |index| painter.paint(cut.layer.colors[index]));
-    frame.draw_title(drawing, title, &errors_note(cut));
-}
-
-/// A page of layers.
-pub(crate) fn layers_page(
-    sheet: &Sheet,
-    panels: &[(String, Cut<'_>)],
-    painter: Painter,
-) -> Drawing {
-    let mut drawing = Drawing::new(sheet.height_mm());
-    for (i, (title, cut)) in panels.iter().enumerate() {
-        let frame = sheet.layer_frame(i / sheet.columns, i % sheet.columns, cut);
-        draw_layer(&mut drawing, &frame, cut, title, painter);
-    }
-    drawing
-}
-
-/// The errors of a layer's points, marked up for a drawing.
-pub(crate) fn errors_note(cut: &Cut<'_>) -> String {
     let (mean, within) = cut.errors();
-    format!("mean Δ*E*_{{00}} {mean:.2}; {} within 1", super::percent(within))
+    let note = format!("mean Δ*E*_{{00}} {mean:.2}; {} within 1", percent(within));
+    frame.draw_title(drawing, title, &note);
+}
+
+/// A page of layers, each with its title in the drawing and its name in the caption. Returns the
+/// drawing, and the names and errors for the caption.
+pub(super) fn layers_page(
+    studio: &Studio<'_>,
+    sheet: &Sheet,
+    panels: &[(String, String, Cut<'_>)],
+) -> (Drawing, String) {
+    let mut drawing = Drawing::new(sheet.height_mm());
+    let mut parts = Vec::new();
+    for (i, (title, name, cut)) in panels.iter().enumerate() {
+        let letter = LETTERS[i];
+        let frame = sheet.layer_frame(i / sheet.columns, i % sheet.columns, cut);
+        draw_layer(&mut drawing, &frame, cut, &format!("[{letter}] {title}"), studio.painter());
+        parts.push(format!("({letter}) {name}: {}", errors_text(cut)));
+    }
+    (drawing, parts.join("; "))
 }
 
 /// The errors of a layer's points, for a caption.
 pub(crate) fn errors_text(cut: &Cut<'_>) -> String {
     let (mean, within) = cut.errors();
-    format!("mean ΔE00 {mean:.2}, {} within 1", super::percent(within))
+    format!("mean ΔE00 {mean:.2}, {} within 1", percent(within))
 }
 
-/// A color of the page as SVG writes it.
+/// A rectangle of one color with an outline.
 pub(crate) fn swatch(drawing: &mut Drawing, rect: Rect, color: [u8; 3]) {
     drawing.fill(rect, &hex(color));
     drawing.outline(rect, Stroke::AXIS);

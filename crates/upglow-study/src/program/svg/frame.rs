@@ -1,4 +1,4 @@
-//! A panel with axes.
+//! Panels with axes.
 
 use super::{Anchor, Drawing, MUTED, Rect, Stroke, Text, number};
 
@@ -7,9 +7,9 @@ use super::{Anchor, Drawing, MUTED, Rect, Stroke, Text, number};
 pub(crate) struct Axis {
     /// Name and unit.
     pub(crate) label: &'static str,
-    /// Values at its two ends.
+    /// Values at its ends.
     pub(crate) range: [f64; 2],
-    /// Values and what is written there.
+    /// Values of the ticks and their texts.
     pub(crate) ticks: Vec<(f64, String)>,
 }
 
@@ -28,7 +28,7 @@ impl Axis {
         Self { label, range, ticks }
     }
 
-    /// The same axis without words, beside a panel that has them.
+    /// The same axis without numbers and label, for a panel beside one that has them.
     pub(crate) fn silent(mut self) -> Self {
         self.label = "";
         self.ticks.iter_mut().for_each(|(_, text)| text.clear());
@@ -40,7 +40,7 @@ impl Axis {
     }
 }
 
-/// A rectangle of the page with axes on its left and lower edge.
+/// A panel: a rectangle of the page with axes at its left and lower edges.
 #[derive(Clone, Debug)]
 pub(crate) struct Frame {
     pub(crate) rect: Rect,
@@ -49,12 +49,12 @@ pub(crate) struct Frame {
 }
 
 const TICK_MM: f64 = 0.9;
-/// From the lower edge to the baselines of numbers and label.
+/// Distance from the lower edge to the baselines of numbers and label.
 const X_NUMBERS_MM: f64 = 3.4;
 const X_LABEL_MM: f64 = 6.6;
-/// From the left edge to the ends of numbers.
+/// Distance from the left edge to the ends of numbers.
 const Y_NUMBERS_MM: f64 = 1.5;
-/// From the numbers to the label, and how wide a digit is.
+/// Distance from the numbers to the label, and width of a digit.
 const Y_LABEL_MM: f64 = 1.6;
 const DIGIT_MM: f64 = 1.22;
 /// Half the height of a digit.
@@ -73,7 +73,7 @@ impl Frame {
         [self.x_of(x), self.y_of(y)]
     }
 
-    /// The frame, ticks, numbers and labels: drawn after the data, so that it lies above.
+    /// Draws outline, ticks, numbers and labels; to be called after the data is drawn.
     pub(crate) fn draw_axes(&self, drawing: &mut Drawing) {
         drawing.outline(self.rect, Stroke::AXIS);
         self.draw_x_axis(drawing);
@@ -114,7 +114,7 @@ impl Frame {
         }
     }
 
-    /// A title above the panel, and a smaller line under it; empty for none.
+    /// Draws a title above the panel and, if `note` is not empty, a smaller line below it.
     pub(crate) fn draw_title(&self, drawing: &mut Drawing, title: &str, note: &str) {
         let Rect { left, top, .. } = self.rect;
         let rise = if note.is_empty() { 1.6 } else { 4.8 };
@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn values_map_to_the_edges() {
+    fn ends_of_a_range_map_to_the_edges() {
         let axis = |range| Axis::every("", range, 1.0);
         let rect = Rect { left: 10.0, top: 20.0, width: 30.0, height: 40.0 };
         let frame = Frame { rect, x: axis([0.0, 2.0]), y: axis([-1.0, 1.0]) };

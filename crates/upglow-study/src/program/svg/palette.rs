@@ -1,13 +1,13 @@
-//! Colors of lines and areas, apart for color-blind readers.
+//! Colors of lines and areas that color-blind readers can tell apart.
 //!
-//! Lines are from the set of Okabe and Ito; the ramps get darker from end to end, so that they
-//! read in gray as well.
+//! The colors of lines are from the set of Okabe and Ito; the ramp of errors darkens steadily, so that
+//! it is readable in gray.
 
 use upglow_svg::byte;
 
 /// Text and axes.
 pub(crate) const INK: &str = "#1f2328";
-/// Second lines of titles.
+/// Second lines of titles, and guides.
 pub(crate) const MUTED: &str = "#5b626b";
 
 /// Absorption.
@@ -15,14 +15,14 @@ pub(crate) const ABSORPTION: &str = "#0072b2";
 /// Emission.
 pub(crate) const EMISSION: &str = "#d55e00";
 
-/// Five weights from 0 to 1, from blue to orange through gray.
+/// Weights of 0, ¼, ½, ¾ and 1, from blue through gray to orange.
 pub(crate) const WEIGHTS: [&str; 5] = ["#1f5fa8", "#5b9bc7", "#8a8f96", "#e39a4f", "#bf4b00"];
 
-/// What shows a color: reflectance, fluorescence, nothing.
+/// Colors matched by a reflectance, only with fluorescence, and by no material.
 pub(crate) const STANDINGS: [[u8; 3]; 3] =
     [[0xdc, 0xe6, 0xe4], [0xf3, 0xb8, 0x6b], [0x5c, 0x66, 0x78]];
 
-/// The ramp of errors, from none to the greatest shown.
+/// The ramp of errors, from zero to the greatest shown.
 const ERRORS: [[u8; 3]; 6] = [
     [0xff, 0xff, 0xff],
     [0xfd, 0xe3, 0xb8],
@@ -32,7 +32,7 @@ const ERRORS: [[u8; 3]; 6] = [
     [0x4f, 0x0a, 0x2e],
 ];
 
-/// The color of an error, a share 0..=1 of the greatest shown; more counts as 1.
+/// The color of an error, given as a share of the greatest shown; clamped to 0..=1.
 pub(crate) fn error_color(share: f64) -> [u8; 3] {
     let last = ERRORS.len() - 1;
     let position = share.clamp(0.0, 1.0) * last as f64;
@@ -47,7 +47,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_ramp_of_errors_starts_white_and_ends_where_it_says() {
+    fn the_ramp_of_errors_runs_from_first_to_last_color() {
         assert_eq!(error_color(0.0), ERRORS[0]);
         assert_eq!(error_color(0.4), ERRORS[2]);
         assert_eq!(error_color(1.0), ERRORS[5]);

@@ -8,13 +8,13 @@ use super::{INK, number};
 const LABEL_MM: f64 = 2.5;
 /// Size of ticks and notes, mm: 6.2 points.
 const NOTE_MM: f64 = 2.2;
-/// A subscript's size and depth, as shares of the text around it.
+/// Size and drop of a subscript, relative to the size of the text.
 const SUBSCRIPT: [f64; 2] = [0.7, 0.22];
 
 const HALO: [(&str, &str); 3] =
     [("paint-order", "stroke"), ("stroke", "#ffffff"), ("stroke-width", "0.7")];
 
-/// The end of the line that the given point is.
+/// Which part of the line is at the given point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Anchor {
     Start,
@@ -50,7 +50,7 @@ impl<'t> Text<'t> {
         }
     }
 
-    /// Smaller: ticks, and notes in a panel.
+    /// Smaller text, for ticks and notes.
     pub(crate) fn note(at: [f64; 2], text: &'t str) -> Self {
         Self { size_mm: NOTE_MM, ..Self::label(at, text) }
     }
@@ -67,12 +67,12 @@ impl<'t> Text<'t> {
         Self { bold: true, ..self }
     }
 
-    /// Turned to read from bottom to top.
+    /// Rotated to read from bottom to top.
     pub(crate) fn upright(self) -> Self {
         Self { upright: true, ..self }
     }
 
-    /// With a white rim, to be read above lines.
+    /// With a white outline, readable on top of lines.
     pub(crate) fn halo(self) -> Self {
         Self { halo: true, ..self }
     }
@@ -148,7 +148,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn marks_become_elements_and_the_baseline_comes_back() {
+    fn marks_become_elements_and_the_baseline_is_restored() {
         assert_eq!(spans("a < b", 2.0), "a &lt; b");
         assert_eq!(
             spans("[a] Δ*E*_{00} ≤ 1", 2.0),

@@ -1,18 +1,17 @@
-//! The claims of the paper that hold, on a small grid; and those that do not, so that a change of
-//! either is noticed.
+//! Which claims hold on a small grid, and which do not, so that a change of either is noticed.
 
 use std::sync::LazyLock;
 
-use crate::claims::{Claim, Verdict};
+use crate::claims::{Claim, Verdict, claims};
 use crate::cubes::Cubes;
-use crate::report::{reproduce, to_markdown};
+use crate::report::to_markdown;
 use upglow_fit::Unwatched;
 
-/// Fine enough for every kind of neighbor to occur, coarse enough to take seconds.
+/// Fine enough for every kind of neighborhood to occur, coarse enough to take seconds.
 const RESOLUTION: usize = 10;
 
 static CLAIMS: LazyLock<Vec<Claim>> =
-    LazyLock::new(|| reproduce(&Cubes::new(RESOLUTION), &Unwatched).expect("nobody stops it"));
+    LazyLock::new(|| claims(&Cubes::new(RESOLUTION), &Unwatched).expect("nobody stops it"));
 
 fn claim(id: &str) -> &'static Claim {
     CLAIMS.iter().find(|claim| claim.id == id).unwrap_or_else(|| panic!("no claim {id}"))
@@ -34,8 +33,8 @@ fn de76_has_artifacts_at_black() {
     assert_holds("de76-artifacts");
 }
 
-/// The claim's limit of 1 % of the layer needs the paper's resolution: the coarser the grid, the
-/// further one node is from the next, and the sharper every bend.
+/// The claim's limit of 1 % of the layer needs the paper's resolution: on a coarser grid nodes are
+/// further apart and every bend is sharper.
 #[test]
 fn de2000_leaves_less_than_half_of_the_artifacts() {
     let of = |name| number("de2000-artifacts", name);
@@ -115,20 +114,20 @@ fn blend_is_exact_between_exact_nodes() {
 }
 
 #[test]
-fn what_does_not_hold_on_any_grid_is_said_so() {
+fn claims_that_fail_on_every_grid_are_reported_as_failed() {
     for id in ["metric-time", "de76-artifacts-8-sweeps", "de76-smoother"] {
         assert_eq!(claim(id).verdict, Verdict::DoesNotHold, "{id}");
     }
 }
 
 #[test]
-fn the_report_has_a_line_for_each_claim_and_the_same_bytes_twice() {
+fn the_report_has_a_line_per_claim_and_is_reproducible() {
     let text = to_markdown(RESOLUTION, &CLAIMS);
     for claim in CLAIMS.iter() {
         assert!(text.contains(&format!("\n| {} | ", claim.id)), "{}", claim.id);
         assert!(text.contains(&format!("\n**{}** ({})", claim.id, claim.verdict)), "{}", claim.id);
     }
-    let again = reproduce(&Cubes::new(4), &Unwatched).unwrap();
-    assert_eq!(again, reproduce(&Cubes::new(4), &Unwatched).unwrap());
+    let again = claims(&Cubes::new(4), &Unwatched).unwrap();
+    assert_eq!(again, claims(&Cubes::new(4), &Unwatched).unwrap());
     assert!(!text.contains("NaN") && !to_markdown(4, &again).contains("NaN"));
 }

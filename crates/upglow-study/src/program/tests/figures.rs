@@ -1,9 +1,10 @@
-//! The figures as files: complete, well-formed, readable, the same twice.
+//! The figures are complete, well-formed, readable and reproducible.
 
 use std::sync::{Arc, OnceLock};
 
 use crate::cubes::Cubes;
-use crate::figures::{Display, Figure, FigureOptions, figures};
+use crate::figures::{Display, Figure, figures};
+use crate::raster::rendered;
 use resvg::usvg::{self, Node, Rect, Tree, fontdb};
 use upglow_fit::{Progress, Unwatched, Watch};
 
@@ -13,7 +14,7 @@ const RESOLUTION: usize = 4;
 fn all() -> &'static [Figure] {
     static ALL: OnceLock<Vec<Figure>> = OnceLock::new();
     ALL.get_or_init(|| {
-        figures(&Cubes::new(RESOLUTION), &FigureOptions::default(), &Unwatched)
+        figures(&Cubes::new(RESOLUTION), None, Display::AsSrgb, &Unwatched)
             .expect("the resolution is in range")
     })
 }
@@ -31,7 +32,7 @@ fn parsed(figure: &Figure) -> Tree {
     Tree::from_str(&figure.svg, &options).expect("it is well-formed")
 }
 
-/// The ink of each text.
+/// Each text with its bounding box.
 fn texts(group: &usvg::Group) -> Vec<(String, Rect)> {
     let mut found = Vec::new();
     for node in group.children() {
@@ -73,7 +74,7 @@ fn every_figure_is_well_formed_and_170_mm_wide() {
 }
 
 #[test]
-fn no_text_leaves_the_page_or_meets_another() {
+fn no_text_leaves_the_page_or_overlaps_another() {
     for figure in all() {
         let tree = parsed(figure);
         let texts = texts(tree.root());
@@ -89,49 +90,38 @@ fn no_text_leaves_the_page_or_meets_another() {
                     || other_ink.right() <= ink.left()
                     || ink.bottom() <= other_ink.top()
                     || other_ink.bottom() <= ink.top();
-                assert!(apart, "{}: {words:?} meets {other:?}", figure.name);
+                assert!(apart, "{}: {words:?} overlaps {other:?}", figure.name);
             }
         }
     }
 }
 
 #[test]
-fn the_same_bytes_come_twice() {
-    let again = figures(&Cubes::new(RESOLUTION), &FigureOptions::default(), &Unwatched).unwrap();
+fn figures_are_reproducible() {
+    let again = figures(&Cubes::new(RESOLUTION), None, Display::AsSrgb, &Unwatched).unwrap();
     assert_eq!(again, all());
     for figure in [&again[3], &again[8]] {
-        assert_eq!(figure.to_png(1.0), figure.to_png(1.0), "{}", figure.name);
+        assert_eq!(rendered(&figure.svg, 1.0), rendered(&figure.svg, 1.0), "{}", figure.name);
     }
 }
 
 #[test]
-fn a_picture_is_as_large_as_its_scale_says() {
+fn a_picture_has_the_size_of_its_scale() {
     // 170 mm at 96 pixels to an inch.
-    let [small, large] = [1.0, 2.0].map(|scale| width(&all()[3].to_png(scale)));
+    let [small, large] = [1.0, 2.0].map(|scale| width(&rendered(&all()[3].svg, scale)));
     assert!((642..=643).contains(&small) && (1284..=1286).contains(&large), "{small}, {large}");
 }
 
 #[test]
-fn one_figure_is_that_of_all() {
-    let options = FigureOptions { only: Some(4), ..FigureOptions::default() };
-    let one = figures(&Cubes::new(RESOLUTION), &options, &Unwatched).unwrap();
+fn a_figure_drawn_alone_is_the_same() {
+    let one = figures(&Cubes::new(RESOLUTION), Some(4), Display::AsSrgb, &Unwatched).unwrap();
     assert_eq!(one, all()[3..4]);
 }
 
 #[test]
 fn a_correct_display_changes_the_colors_of_layers() {
-    let options = FigureOptions { only: Some(5), display: Display::Correct };
-    let correct = figures(&Cubes::new(RESOLUTION), &options, &Unwatched).unwrap();
+    let correct = figures(&Cubes::new(RESOLUTION), Some(5), Display::Correct, &Unwatched).unwrap();
     assert_ne!(correct[0].svg, all()[4].svg);
-}
-
-#[test]
-fn an_unknown_number_is_refused() {
-    for found in [0, 11] {
-        let options = FigureOptions { only: Some(found), ..FigureOptions::default() };
-        let refused = figures(&Cubes::new(RESOLUTION), &options, &Unwatched).unwrap_err();
-        assert_eq!(refused.to_string(), format!("figure {found}, expected 1 to 10"));
-    }
 }
 
 #[test]
@@ -144,7 +134,7 @@ fn a_stopped_watcher_stops_the_work() {
             true
         }
     }
-    let stopped = figures(&Cubes::new(RESOLUTION), &FigureOptions::default(), &Stopped);
+    let stopped = figures(&Cubes::new(RESOLUTION), None, Display::AsSrgb, &Stopped);
     assert_eq!(stopped.unwrap_err().to_string(), "stopped");
 }
 
