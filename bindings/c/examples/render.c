@@ -1,4 +1,4 @@
-/* The material of one color, as a renderer asks for it: reflectance at the wavelengths of a path,
+/* The material of one color, as a renderer evaluates it: reflectance at the wavelengths of a path,
  * and the color it has under the cube's light.
  *
  *     render CUBE R G B

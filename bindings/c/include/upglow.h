@@ -28,8 +28,8 @@
 #define UPGLOW_ALIGNED(n) __attribute__((aligned(n)))
 #endif
 
-// First number of the version that this header describes. While it is 0, a change of the second
-// may change any function.
+// First number of the version that this header describes. While it is 0, any function may change
+// with the second.
 #define UPGLOW_VERSION_MAJOR 0
 
 // Second number of the version that this header describes.
@@ -38,28 +38,28 @@
 // Third number of the version that this header describes.
 #define UPGLOW_VERSION_PATCH 0
 
-// How a call ended. On any status but `UPGLOW_STATUS_OK` what the call would have written is
-// untouched, and `upglow_message` says why.
+// How a call ended. On any status but `UPGLOW_STATUS_OK` the call has not written its results, and
+// `upglow_message` returns the reason.
 typedef enum {
-    // The call did what it should.
+    // Success.
     UPGLOW_STATUS_OK = 0,
     // A pointer that must point to something is null.
     UPGLOW_STATUS_NULL_POINTER = 1,
-    // An argument is not what the function's text asks for.
+    // An argument does not meet the requirements in the function's documentation.
     UPGLOW_STATUS_INVALID_ARGUMENT = 2,
     // A file cannot be read.
     UPGLOW_STATUS_FILE = 3,
-    // A file or its content is no cube that this version reads.
+    // A file or its content is not a cube that this version reads.
     UPGLOW_STATUS_NOT_A_CUBE = 4,
-    // A color is outside the cube, or no number.
+    // A color is outside the cube, or NaN.
     UPGLOW_STATUS_OUTSIDE = 5,
-    // A fault of this library, which it survived; please report it.
+    // An error in this library, which can still be used; please report it.
     UPGLOW_STATUS_INTERNAL = 6,
 } UpglowStatus;
 
 // How a wavelength was drawn.
 typedef enum {
-    // Nothing was drawn: the material carries no light at the known wavelength. The path ends.
+    // Nothing was drawn: the light is absorbed, and the path ends.
     UPGLOW_DRAW_ABSORBED = 0,
     // The wavelength was kept.
     UPGLOW_DRAW_ELASTIC = 1,
@@ -67,46 +67,45 @@ typedef enum {
     UPGLOW_DRAW_FLUORESCENT = 2,
 } UpglowDraw;
 
-// The colors that the materials of a cube have under one light. It never changes: any number of
-// threads may use it at once. It does not need its cube any more.
+// The colors of a cube's materials under one light. It is immutable: any number of threads may use
+// it at once. It does not refer to the cube.
 typedef struct UpglowColors UpglowColors;
 
-// A cube of materials for all colors of an RGB space. It never changes: any number of threads may
+// A cube of materials for all colors of an RGB space. It is immutable: any number of threads may
 // use it at once.
 typedef struct UpglowCube UpglowCube;
 
-// What a cube says of itself. The texts are UTF-8 and the cube's own: they last as long as it
-// does.
+// Properties of a cube. The texts are UTF-8, and valid until the cube is destroyed.
 typedef struct {
     // Nodes along each axis, 2 to 256.
     uint32_t resolution;
-    // Whether any material of it fluoresces.
+    // Whether any of its materials fluoresces.
     bool fluoresces;
     // Name of the RGB space, whose components are linear.
     const char *rgb_space;
-    // x and y of the space's red, green and blue, as it is standardized: CIE 1931 2 degrees.
+    // CIE 1931 2 degree x and y of the space's red, green and blue.
     double primaries[3][2];
-    // x and y of the space's white, likewise.
+    // CIE 1931 2 degree x and y of the space's white.
     double white[2];
-    // Name of the light that RGB is seen under, as in "D65".
+    // Name of the light that RGB is seen under, such as "D65".
     const char *illuminant;
-    // Name of the observer that sees it.
+    // Name of the observer.
     const char *observer;
-    // How the space's white becomes the light's: "bradford", or "none".
+    // Chromatic adaptation from the space's white to the light's: "bradford" or "none".
     const char *adaptation;
-    // What fluoresces: "dyes", "analytic", or "reflectance" for nothing.
+    // Model of fluorescence: "dyes", "analytic", or "reflectance" for none.
     const char *model;
-    // All that the file's header says, in JSON.
+    // The file's header, in JSON.
     const char *header_json;
 } UpglowCubeFacts;
 
-// The material of one color, in memory of the caller's own: on the stack, in an array, in another
-// struct. Nothing is allocated for it and nothing is to be freed. It may be copied.
+// The material of one color, in the caller's memory: on the stack, in an array, in another struct.
+// Nothing is allocated for it and nothing has to be freed. It may be copied.
 //
-// `upglow_look_up` fills it; its content is the library's business. It refers to its cube, which
-// must outlive it. One that is all zeros is empty and refused. Threads may read it at once.
+// `upglow_look_up` fills it; its content is private. It refers to its cube, which must outlive it.
+// A material of all zeros is empty, and functions refuse it. Any number of threads may read one.
 typedef struct UPGLOW_ALIGNED(16) {
-    // More room than this version needs, so that a later one fits as well.
+    // More room than this version needs, in reserve for later ones.
     uint64_t words[32];
 } UpglowMaterial;
 
@@ -119,12 +118,12 @@ typedef struct {
     UpglowDraw draw;
     // The wavelength drawn, nm; the known one if nothing was drawn.
     float lambda_nm;
-    // Factor for the path's throughput: what the material carries divided by how likely the draw
-    // was. It depends on the known wavelength alone; 0 if nothing was drawn.
+    // Factor for the path's throughput: the material's value divided by the probability or density
+    // of the draw. It depends on the known wavelength alone; 0 if nothing was drawn.
     float throughput;
-    // How likely it was to keep the wavelength, 0 to 1; 0 unless it was kept.
+    // Probability of keeping the wavelength, 0 to 1; 0 unless it was kept.
     float probability;
-    // The density of the wavelength drawn, 1/nm; 0 unless it was changed.
+    // Density of the wavelength drawn, 1/nm; 0 unless it was changed.
     float pdf_per_nm;
 } UpglowSample;
 
@@ -132,28 +131,29 @@ typedef struct {
 extern "C" {
 #endif // __cplusplus
 
-// The version of the library that is linked, as in "0.1.0". It lives as long as the program.
+// The version of the library that is linked, such as "0.1.0". The text is valid until the program
+// ends.
 const char *upglow_version(void);
 
-// Why the last call that failed on this thread did so: one line of English in UTF-8, without a
-// period; empty if none failed yet.
+// The reason of the last failure on this thread: one line of English in UTF-8, without a period;
+// empty if no call has failed yet.
 //
-// It is this thread's own and lasts until the thread's next failure or its end; copy what must
-// last longer. Calls that succeed leave it as it is.
+// Each thread has its own message. It is valid until the thread's next failure or its end; copy it
+// to keep it longer. Calls that succeed do not change it.
 const char *upglow_message(void);
 
-// The name of a status, as in `UPGLOW_STATUS_OUTSIDE`. Any number is allowed: one that is no
-// status is "unknown status". It lives as long as the program.
+// The name of a status, such as `UPGLOW_STATUS_OUTSIDE`. Any number is allowed; the name of an
+// unknown one is "unknown status". The text is valid until the program ends.
 const char *upglow_status_name(int32_t status);
 
 // Loads the cube in a file.
 //
 // `path` is UTF-8, or on Unix any bytes, and ends with a zero byte. `*cube` receives a cube that
-// the caller owns and gives back to `upglow_cube_destroy`. All memory that look-ups and
-// evaluations need is allocated here.
+// the caller owns and must destroy with `upglow_cube_destroy`. All memory for look-ups and
+// evaluations is allocated here.
 //
 // Fails with `UPGLOW_STATUS_FILE` if the file cannot be read, and with `UPGLOW_STATUS_NOT_A_CUBE`
-// if it is not whole, not a cube or of another version. The message names the file.
+// if it is incomplete, not a cube or of an unknown version. The message names the file.
 //
 // Pointers are null or point to what is described above.
 UpglowStatus upglow_cube_open(const char *path, UpglowCube **cube);
@@ -161,20 +161,20 @@ UpglowStatus upglow_cube_open(const char *path, UpglowCube **cube);
 // Loads a cube from the content of its file: `length` bytes, which are copied and may be freed
 // afterwards.
 //
-// Otherwise like `upglow_cube_open`.
+// For the rest, see `upglow_cube_open`.
 //
 // Pointers are null or point to what is described above.
 UpglowStatus upglow_cube_from_memory(const uint8_t *bytes, size_t length, UpglowCube **cube);
 
 // Frees a cube; null is allowed and does nothing.
 //
-// Materials that were looked up in it must not be used any more. No other thread may be using it.
+// Materials that were looked up in it must not be used afterwards. No other thread may be using it.
 //
 // `cube` is null or came from `upglow_cube_open` or `upglow_cube_from_memory`, and was not
 // destroyed before.
 void upglow_cube_destroy(UpglowCube *cube);
 
-// What a cube says of itself. The texts last as long as the cube.
+// Writes the properties of a cube. The texts are valid until the cube is destroyed.
 //
 // Pointers are null or point to a cube and to room for the facts.
 UpglowStatus upglow_cube_facts(const UpglowCube *cube, UpglowCubeFacts *facts);
@@ -183,18 +183,20 @@ UpglowStatus upglow_cube_facts(const UpglowCube *cube, UpglowCubeFacts *facts);
 //
 // It allocates nothing. The material refers to the cube.
 //
-// Fails with `UPGLOW_STATUS_OUTSIDE` if a component is not a number in 0 to 1: whoever wants the
-// nearest color of the cube clamps first.
+// Fails with `UPGLOW_STATUS_OUTSIDE` if a component is not in 0 to 1; clamp first to get the nearest
+// color of the cube.
 //
 // Pointers are null or point to a cube, to 3 values and to room for a material.
-UpglowStatus upglow_look_up(const UpglowCube *cube, const float rgb[3], UpglowMaterial *material);
+UpglowStatus upglow_look_up(const UpglowCube *cube,
+                            const float rgb[3],
+                            UpglowMaterial *material);
 
 // Looks up the materials of `count` colors.
 //
 // `rgb` is `[count][3]`: red, green, blue of each color in turn, linear, in the cube's space; `materials`
-// is `[count]`, and must not overlap it. It allocates nothing. A color outside the cube, or not a
-// number, has no material: it gets an empty one, all zeros, which is refused wherever it is used; the
-// others are right, and `*outside`, unless `outside` is null, receives how many those are.
+// is `[count]`, and must not overlap it. It allocates nothing. Colors outside the cube, or NaN, get
+// an empty material, all zeros, which functions refuse; `*outside`, unless `outside` is null, receives
+// the number of these colors.
 //
 // Pointers are null or point to a cube, to 3 times `count` values, to room for `count` materials and
 // to room for a number.
@@ -204,7 +206,7 @@ UpglowStatus upglow_look_up_many(const UpglowCube *cube,
                                  size_t count,
                                  size_t *outside);
 
-// Whether any light comes back at another wavelength.
+// Whether the material re-radiates any light at another wavelength.
 //
 // Pointers are null or point to a material that was looked up and to room for the answer.
 UpglowStatus upglow_is_fluorescent(const UpglowMaterial *material, bool *is_fluorescent);
@@ -212,29 +214,29 @@ UpglowStatus upglow_is_fluorescent(const UpglowMaterial *material, bool *is_fluo
 // Share of incident light at `lambda_nm` that is reflected at the same wavelength, 0 to 1; divided by
 // pi it is the elastic BRDF.
 //
-// Any wavelength is allowed; beyond 0 to 10000 nm the answer is that of the nearer end.
+// Any wavelength is allowed; those outside 0 to 10000 nm are clamped.
 //
 // Pointers are null or point to a material that was looked up and to room for the answer.
 UpglowStatus upglow_reflectance(const UpglowMaterial *material,
                                 float lambda_nm,
                                 float *reflectance);
 
-// `upglow_reflectance` at 4 wavelengths (nm), faster than one by one. Both arrays may be the same.
+// `upglow_reflectance` at 4 wavelengths (nm), faster than one at a time. Both arrays may be the same.
 //
 // Pointers are null or point to a material that was looked up and to 4 values each.
 UpglowStatus upglow_reflectance_4(const UpglowMaterial *material,
                                   const float lambda_nm[4],
                                   float reflectance[4]);
 
-// `upglow_reflectance` at 8 wavelengths (nm), faster than one by one. Both arrays may be the same.
+// `upglow_reflectance` at 8 wavelengths (nm), faster than one at a time. Both arrays may be the same.
 //
 // Pointers are null or point to a material that was looked up and to 8 values each.
 UpglowStatus upglow_reflectance_8(const UpglowMaterial *material,
                                   const float lambda_nm[8],
                                   float reflectance[8]);
 
-// Energy that comes out per nm at `out_nm` by fluorescence, per unit that came in at `in_nm`; in
-// 1/nm, 0 or more. What is reflected at the same wavelength is not part of it.
+// Energy re-radiated per nm at `out_nm`, per unit of energy incident at `in_nm`; 1/nm, 0 or more.
+// It does not include reflection at the same wavelength.
 //
 // Pointers are null or point to a material that was looked up and to room for the answer.
 UpglowStatus upglow_reradiation(const UpglowMaterial *material,
@@ -242,14 +244,14 @@ UpglowStatus upglow_reradiation(const UpglowMaterial *material,
                                 float out_nm,
                                 float *per_nm);
 
-// Share of incident light at `in_nm` that comes out at any wavelength, 0 to 1: reflectance and the
+// Share of incident light at `in_nm` that leaves at any wavelength, 0 to 1: reflectance plus the
 // integral of the re-radiation.
 //
 // Pointers are null or point to a material that was looked up and to room for the answer.
 UpglowStatus upglow_albedo(const UpglowMaterial *material, float in_nm, float *albedo);
 
-// Draws the wavelength of incident light, given that of the light that leaves: a path from the
-// camera.
+// Draws the wavelength of incident light, given that of the light that leaves, for paths that start
+// at the camera.
 //
 // `u` are 2 independent numbers in 0 to 1, 1 excluded; the first chooses between reflection and
 // fluorescence, the second draws the wavelength.
@@ -276,8 +278,8 @@ UpglowStatus upglow_incident_elastic_probability(const UpglowMaterial *material,
                                                  float out_nm,
                                                  float *probability);
 
-// Draws the wavelength of the light that leaves, given that of incident light: a path from the
-// light.
+// Draws the wavelength of the light that leaves, given that of incident light, for paths that start
+// at a light.
 //
 // `u` are 2 independent numbers in 0 to 1, 1 excluded; the first chooses between reflection and
 // fluorescence, the second draws the wavelength.
@@ -307,11 +309,11 @@ UpglowStatus upglow_outgoing_elastic_probability(const UpglowMaterial *material,
 // Computes the colors of a cube's materials under a light: "D65", "D60", "D55", "D50", "A" or "E",
 // or under the cube's own if `illuminant` is null.
 //
-// `*colors` receives colors that the caller owns and gives back to `upglow_colors_destroy`. All
-// memory that `upglow_xyz` needs is allocated here: 16 bytes for each node of the cube.
+// `*colors` receives colors that the caller owns and must destroy with `upglow_colors_destroy`. All
+// memory for `upglow_xyz` is allocated here: 16 bytes per node of the cube.
 //
-// Fails with `UPGLOW_STATUS_INVALID_ARGUMENT` if there is no such light, or the cube's observer does
-// not see it.
+// Fails with `UPGLOW_STATUS_INVALID_ARGUMENT` if there is no such light, or it has no luminance for
+// the cube's observer.
 //
 // Pointers are null or point to a cube, to text that ends with a zero byte and to room for a
 // pointer.
@@ -319,14 +321,14 @@ UpglowStatus upglow_colors_create(const UpglowCube *cube,
                                   const char *illuminant,
                                   UpglowColors **colors);
 
-// Computes the colors of a cube's materials under a light that was measured.
+// Computes the colors of a cube's materials under a measured light.
 //
 // `lambda_nm` and `power` are `[count]`: wavelengths (nm) that ascend from 300 or below to 830 or
 // above in steps of at most 10, and the light's relative power at each, 0 or more. Both are copied.
 // `*colors` receives colors as from `upglow_colors_create`.
 //
-// Fails with `UPGLOW_STATUS_INVALID_ARGUMENT` if the samples are no light, or one that the cube's
-// observer does not see; the message names the index, from 0.
+// Fails with `UPGLOW_STATUS_INVALID_ARGUMENT` if the samples are invalid, and names the index from
+// 0, or if the light has no luminance for the cube's observer.
 //
 // Pointers are null or point to a cube, to `count` values each and to room for a pointer.
 UpglowStatus upglow_colors_create_sampled(const UpglowCube *cube,
@@ -341,13 +343,12 @@ UpglowStatus upglow_colors_create_sampled(const UpglowCube *cube,
 // not destroyed before.
 void upglow_colors_destroy(UpglowColors *colors);
 
-// X, Y and Z of the materials of `count` colors, as the cube's observer sees them; Y of the perfect
-// diffuser under the light is 1.
+// X, Y and Z of the materials of `count` colors, for the cube's observer; Y of the perfect diffuser
+// under the light is 1.
 //
 // `rgb` and `xyz` are `[count][3]`: red, green, blue of each color in turn, linear, in the cube's
-// space; X, Y, Z of each in turn. They must not overlap. A color outside the cube, or not a number,
-// has no material: its X, Y and Z are not-a-number, the others are right, and `*outside`, unless
-// `outside` is null, receives how many those are.
+// space; X, Y, Z of each in turn. They must not overlap. X, Y and Z of colors outside the cube, or
+// NaN, are NaN; `*outside`, unless `outside` is null, receives the number of these colors.
 //
 // Pointers are null or point to colors, to 3 times `count` values each and to room for a number.
 UpglowStatus upglow_xyz(const UpglowColors *colors,

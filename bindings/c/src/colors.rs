@@ -1,6 +1,6 @@
 //! Colors of whole images.
 
-use std::ffi::{CStr, c_char};
+use std::ffi::c_char;
 
 use upglow::ColorTable;
 use upglow_color::{Contract, Grid, Illuminant};
@@ -11,8 +11,8 @@ use crate::pointer::{
     Output, assert_shared_by_threads, borrowed, destroy, refuse_overlap, slice, slice_mut, text,
 };
 
-/// The colors that the materials of a cube have under one light. It never changes: any number of
-/// threads may use it at once. It does not need its cube any more.
+/// The colors of a cube's materials under one light. It is immutable: any number of threads may use
+/// it at once. It does not refer to the cube.
 #[derive(Debug)]
 pub struct UpglowColors {
     table: ColorTable,
@@ -23,11 +23,11 @@ const _: () = assert_shared_by_threads::<UpglowColors>();
 /// Computes the colors of a cube's materials under a light: "D65", "D60", "D55", "D50", "A" or "E",
 /// or under the cube's own if `illuminant` is null.
 ///
-/// `*colors` receives colors that the caller owns and gives back to `upglow_colors_destroy`. All
-/// memory that `upglow_xyz` needs is allocated here: 16 bytes for each node of the cube.
+/// `*colors` receives colors that the caller owns and must destroy with `upglow_colors_destroy`. All
+/// memory for `upglow_xyz` is allocated here: 16 bytes per node of the cube.
 ///
-/// Fails with `UPGLOW_STATUS_INVALID_ARGUMENT` if there is no such light, or the cube's observer does
-/// not see it.
+/// Fails with `UPGLOW_STATUS_INVALID_ARGUMENT` if there is no such light, or it has no luminance for
+/// the cube's observer.
 ///
 /// # Safety
 ///
@@ -44,22 +44,26 @@ pub unsafe extern "C" fn upglow_colors_create(
         let (cube, output) = unsafe { (borrowed(cube, "cube")?, Output::new(colors, "colors")?) };
         let light = match illuminant.is_null() {
             true => cube.cube.contract().illuminant.clone(),
-            // SAFETY: the same.
-            false => named(unsafe { text(illuminant, "illuminant")? })?,
+            false => {
+                // SAFETY: the same.
+                let name = unsafe { text(illuminant, "illuminant")? }.to_str();
+                let argument = "illuminant";
+                Illuminant::named(name.map_err(|_| Failure::NotText { argument })?)?
+            }
         };
         output.write(Box::into_raw(UpglowColors::try_new(cube, light)?));
         Ok(())
     })
 }
 
-/// Computes the colors of a cube's materials under a light that was measured.
+/// Computes the colors of a cube's materials under a measured light.
 ///
 /// `lambda_nm` and `power` are `[count]`: wavelengths (nm) that ascend from 300 or below to 830 or
 /// above in steps of at most 10, and the light's relative power at each, 0 or more. Both are copied.
 /// `*colors` receives colors as from `upglow_colors_create`.
 ///
-/// Fails with `UPGLOW_STATUS_INVALID_ARGUMENT` if the samples are no light, or one that the cube's
-/// observer does not see; the message names the index, from 0.
+/// Fails with `UPGLOW_STATUS_INVALID_ARGUMENT` if the samples are invalid, and names the index from
+/// 0, or if the light has no luminance for the cube's observer.
 ///
 /// # Safety
 ///
@@ -78,20 +82,12 @@ pub unsafe extern "C" fn upglow_colors_create_sampled(
         // SAFETY: the same.
         let (nm, power) =
             unsafe { (slice(lambda_nm, count, "lambda_nm")?, slice(power, count, "power")?) };
+        let doubles = |values: &[f32]| values.iter().map(|&v| f64::from(v)).collect::<Vec<_>>();
         let [nm, power] = [nm, power].map(doubles);
         let light = Illuminant::from_samples("sampled", &nm, &power)?;
         output.write(Box::into_raw(UpglowColors::try_new(cube, light)?));
         Ok(())
     })
-}
-
-fn doubles(values: &[f32]) -> Vec<f64> {
-    values.iter().map(|&value| f64::from(value)).collect()
-}
-
-fn named(illuminant: &CStr) -> Result<Illuminant, Failure> {
-    let name = illuminant.to_str().map_err(|_| Failure::NotText { argument: "illuminant" })?;
-    Ok(Illuminant::named(name)?)
 }
 
 impl UpglowColors {
@@ -114,13 +110,12 @@ pub unsafe extern "C" fn upglow_colors_destroy(colors: *mut UpglowColors) {
     unsafe { destroy(colors) };
 }
 
-/// X, Y and Z of the materials of `count` colors, as the cube's observer sees them; Y of the perfect
-/// diffuser under the light is 1.
+/// X, Y and Z of the materials of `count` colors, for the cube's observer; Y of the perfect diffuser
+/// under the light is 1.
 ///
 /// `rgb` and `xyz` are `[count][3]`: red, green, blue of each color in turn, linear, in the cube's
-/// space; X, Y, Z of each in turn. They must not overlap. A color outside the cube, or not a number,
-/// has no material: its X, Y and Z are not-a-number, the others are right, and `*outside`, unless
-/// `outside` is null, receives how many those are.
+/// space; X, Y, Z of each in turn. They must not overlap. X, Y and Z of colors outside the cube, or
+/// NaN, are NaN; `*outside`, unless `outside` is null, receives the number of these colors.
 ///
 /// # Safety
 ///

@@ -1,4 +1,4 @@
-//! Cubes: loaded once, shared by all threads.
+//! Cubes, which are loaded once and shared by all threads.
 
 use std::ffi::{CStr, CString, OsStr, c_char};
 use std::path::Path;
@@ -8,50 +8,39 @@ use upglow::{Cube, LookupTable};
 use crate::failure::{Failure, UpglowStatus, guarded};
 use crate::pointer::{Output, assert_shared_by_threads, borrowed, destroy, slice, text};
 
-/// A cube of materials for all colors of an RGB space. It never changes: any number of threads may
+/// A cube of materials for all colors of an RGB space. It is immutable: any number of threads may
 /// use it at once.
 #[derive(Debug)]
 pub struct UpglowCube {
     pub(crate) cube: Cube,
     pub(crate) table: LookupTable,
-    names: Names,
+    /// The texts of [`UpglowCubeFacts`], in its order.
+    texts: [CString; 6],
 }
 
-/// Texts of [`UpglowCubeFacts`].
-#[derive(Debug)]
-struct Names {
-    rgb_space: CString,
-    illuminant: CString,
-    observer: CString,
-    adaptation: CString,
-    model: CString,
-    header_json: CString,
-}
-
-/// What a cube says of itself. The texts are UTF-8 and the cube's own: they last as long as it
-/// does.
+/// Properties of a cube. The texts are UTF-8, and valid until the cube is destroyed.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct UpglowCubeFacts {
     /// Nodes along each axis, 2 to 256.
     pub resolution: u32,
-    /// Whether any material of it fluoresces.
+    /// Whether any of its materials fluoresces.
     pub fluoresces: bool,
     /// Name of the RGB space, whose components are linear.
     pub rgb_space: *const c_char,
-    /// x and y of the space's red, green and blue, as it is standardized: CIE 1931 2 degrees.
+    /// CIE 1931 2 degree x and y of the space's red, green and blue.
     pub primaries: [[f64; 2]; 3],
-    /// x and y of the space's white, likewise.
+    /// CIE 1931 2 degree x and y of the space's white.
     pub white: [f64; 2],
-    /// Name of the light that RGB is seen under, as in "D65".
+    /// Name of the light that RGB is seen under, such as "D65".
     pub illuminant: *const c_char,
-    /// Name of the observer that sees it.
+    /// Name of the observer.
     pub observer: *const c_char,
-    /// How the space's white becomes the light's: "bradford", or "none".
+    /// Chromatic adaptation from the space's white to the light's: "bradford" or "none".
     pub adaptation: *const c_char,
-    /// What fluoresces: "dyes", "analytic", or "reflectance" for nothing.
+    /// Model of fluorescence: "dyes", "analytic", or "reflectance" for none.
     pub model: *const c_char,
-    /// All that the file's header says, in JSON.
+    /// The file's header, in JSON.
     pub header_json: *const c_char,
 }
 
@@ -59,43 +48,39 @@ const _: () = assert_shared_by_threads::<UpglowCube>();
 
 impl UpglowCube {
     fn new(cube: Cube) -> Box<Self> {
-        Box::new(Self { table: cube.lookup_table(), names: Names::of(&cube), cube })
+        let contract = cube.contract();
+        let texts = [
+            contract.space.name(),
+            contract.illuminant.name(),
+            contract.observer.name(),
+            &contract.adaptation.to_string(),
+            cube.model().name(),
+            &cube.header_json(),
+        ];
+        Box::new(Self { table: cube.lookup_table(), texts: texts.map(c_text), cube })
     }
 
     fn facts(&self) -> UpglowCubeFacts {
         let space = &self.cube.contract().space;
-        let Names { rgb_space, illuminant, observer, adaptation, model, header_json } = &self.names;
+        let texts = self.texts.each_ref().map(|text| text.as_ptr());
+        let [rgb_space, illuminant, observer, adaptation, model, header_json] = texts;
         UpglowCubeFacts {
             resolution: u32::try_from(self.cube.resolution()).expect("at most 256"),
             fluoresces: (0..self.cube.nodes().len())
                 .any(|node| self.cube.node_material(node).fluorescence.concentration() > 0.0),
-            rgb_space: rgb_space.as_ptr(),
+            rgb_space,
             primaries: space.primaries(),
             white: space.white(),
-            illuminant: illuminant.as_ptr(),
-            observer: observer.as_ptr(),
-            adaptation: adaptation.as_ptr(),
-            model: model.as_ptr(),
-            header_json: header_json.as_ptr(),
+            illuminant,
+            observer,
+            adaptation,
+            model,
+            header_json,
         }
     }
 }
 
-impl Names {
-    fn of(cube: &Cube) -> Self {
-        let contract = cube.contract();
-        Self {
-            rgb_space: c_text(contract.space.name()),
-            illuminant: c_text(contract.illuminant.name()),
-            observer: c_text(contract.observer.name()),
-            adaptation: c_text(&contract.adaptation.to_string()),
-            model: c_text(cube.model().name()),
-            header_json: c_text(&cube.header_json()),
-        }
-    }
-}
-
-/// The text up to its first zero byte, which ends texts in C.
+/// The text up to its first zero byte, which ends a text in C.
 fn c_text(text: &str) -> CString {
     let visible = text.split('\0').next().unwrap_or_default();
     CString::new(visible).expect("cut before the first zero byte")
@@ -104,11 +89,11 @@ fn c_text(text: &str) -> CString {
 /// Loads the cube in a file.
 ///
 /// `path` is UTF-8, or on Unix any bytes, and ends with a zero byte. `*cube` receives a cube that
-/// the caller owns and gives back to `upglow_cube_destroy`. All memory that look-ups and
-/// evaluations need is allocated here.
+/// the caller owns and must destroy with `upglow_cube_destroy`. All memory for look-ups and
+/// evaluations is allocated here.
 ///
 /// Fails with `UPGLOW_STATUS_FILE` if the file cannot be read, and with `UPGLOW_STATUS_NOT_A_CUBE`
-/// if it is not whole, not a cube or of another version. The message names the file.
+/// if it is incomplete, not a cube or of an unknown version. The message names the file.
 ///
 /// # Safety
 ///
@@ -142,7 +127,7 @@ fn file_path(path: &CStr) -> Result<&Path, Failure> {
 /// Loads a cube from the content of its file: `length` bytes, which are copied and may be freed
 /// afterwards.
 ///
-/// Otherwise like `upglow_cube_open`.
+/// For the rest, see `upglow_cube_open`.
 ///
 /// # Safety
 ///
@@ -164,7 +149,7 @@ pub unsafe extern "C" fn upglow_cube_from_memory(
 
 /// Frees a cube; null is allowed and does nothing.
 ///
-/// Materials that were looked up in it must not be used any more. No other thread may be using it.
+/// Materials that were looked up in it must not be used afterwards. No other thread may be using it.
 ///
 /// # Safety
 ///
@@ -176,7 +161,7 @@ pub unsafe extern "C" fn upglow_cube_destroy(cube: *mut UpglowCube) {
     unsafe { destroy(cube) };
 }
 
-/// What a cube says of itself. The texts last as long as the cube.
+/// Writes the properties of a cube. The texts are valid until the cube is destroyed.
 ///
 /// # Safety
 ///

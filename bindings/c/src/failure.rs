@@ -1,4 +1,4 @@
-//! How a call ends: a status for the program, a message for its user, and no panic across the edge.
+//! How a call ends: a status for the program, a message for its user, and no panic that leaves Rust.
 
 use std::any::Any;
 use std::cell::RefCell;
@@ -9,24 +9,24 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use upglow::{CubeFileError, LookupError, ReadCubeError};
 use upglow_color::{ContractError, IlluminantError};
 
-/// How a call ended. On any status but `UPGLOW_STATUS_OK` what the call would have written is
-/// untouched, and `upglow_message` says why.
+/// How a call ended. On any status but `UPGLOW_STATUS_OK` the call has not written its results, and
+/// `upglow_message` returns the reason.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UpglowStatus {
-    /// The call did what it should.
+    /// Success.
     Ok = 0,
     /// A pointer that must point to something is null.
     NullPointer = 1,
-    /// An argument is not what the function's text asks for.
+    /// An argument does not meet the requirements in the function's documentation.
     InvalidArgument = 2,
     /// A file cannot be read.
     File = 3,
-    /// A file or its content is no cube that this version reads.
+    /// A file or its content is not a cube that this version reads.
     NotACube = 4,
-    /// A color is outside the cube, or no number.
+    /// A color is outside the cube, or NaN.
     Outside = 5,
-    /// A fault of this library, which it survived; please report it.
+    /// An error in this library, which can still be used; please report it.
     Internal = 6,
 }
 
@@ -37,13 +37,13 @@ pub(crate) enum Failure {
     Null { argument: &'static str },
     #[error("{argument} is at address {address:#x}, expected a multiple of {alignment}")]
     Misaligned { argument: &'static str, address: usize, alignment: usize },
-    #[error("{argument} has {found} {what}, expected at most {most}")]
-    TooMany { argument: &'static str, what: &'static str, found: usize, most: usize },
+    #[error("{argument} has {found} values, expected at most {most}")]
+    TooMany { argument: &'static str, found: usize, most: usize },
     #[error("{argument} is not UTF-8, expected text")]
     NotText { argument: &'static str },
     #[error("material is empty, expected one that upglow_look_up filled")]
     EmptyMaterial,
-    #[error("{argument} overlaps rgb, expected memory of its own")]
+    #[error("{argument} overlaps rgb, expected separate memory")]
     Overlap { argument: &'static str },
     #[error(transparent)]
     File(#[from] CubeFileError),
@@ -69,7 +69,7 @@ impl Failure {
     }
 }
 
-/// Does the work of a call. A panic ends here: across the edge it would end the program.
+/// Does the work of a call. It catches panics, which would abort the program if they reached C.
 #[inline(always)]
 pub(crate) fn guarded(work: impl FnOnce() -> Result<(), Failure>) -> UpglowStatus {
     match catch_unwind(AssertUnwindSafe(work)) {
@@ -89,14 +89,14 @@ fn failed(failure: &Failure) -> UpglowStatus {
 fn panicked(payload: Box<dyn Any + Send>) -> UpglowStatus {
     let text = payload.downcast_ref::<&str>().copied();
     let text = text.or_else(|| payload.downcast_ref::<String>().map(String::as_str));
-    keep(format_args!("a fault of upglow: {}", text.unwrap_or("no reason given")));
-    // Dropping it could panic again.
+    keep(format_args!("internal error of upglow: {}", text.unwrap_or("no reason given")));
+    // Dropping the payload could panic again.
     std::mem::forget(payload);
     UpglowStatus::Internal
 }
 
-/// Room for a message, with its final zero. Messages of half this length are rare; a longer one is
-/// cut. It is fixed so that a failed look-up allocates no more than one that succeeds.
+/// Room for a message, with its final zero byte; a longer one is truncated. The size is fixed, so
+/// that a look-up that fails does not allocate either.
 const MESSAGE_BYTES: usize = 1024;
 
 /// Text that ends with a zero byte.
@@ -111,7 +111,7 @@ thread_local! {
 }
 
 impl Write for Message {
-    /// Takes whole characters while there is room, and no zero byte, which would end the text.
+    /// Appends whole characters while there is room, and skips zero bytes, which would end the text.
     fn write_str(&mut self, text: &str) -> fmt::Result {
         for character in text.chars().filter(|character| *character != '\0') {
             let end = self.length + character.len_utf8();
@@ -128,17 +128,17 @@ impl Write for Message {
 fn keep(text: fmt::Arguments<'_>) {
     MESSAGE.with_borrow_mut(|message| {
         message.length = 0;
-        // What does not fit is cut: half a reason is better than none.
+        // Fails if the text does not fit; the truncated message stays.
         message.write_fmt(text).ok();
         message.bytes[message.length] = 0;
     });
 }
 
-/// Why the last call that failed on this thread did so: one line of English in UTF-8, without a
-/// period; empty if none failed yet.
+/// The reason of the last failure on this thread: one line of English in UTF-8, without a period;
+/// empty if no call has failed yet.
 ///
-/// It is this thread's own and lasts until the thread's next failure or its end; copy what must
-/// last longer. Calls that succeed leave it as it is.
+/// Each thread has its own message. It is valid until the thread's next failure or its end; copy it
+/// to keep it longer. Calls that succeed do not change it.
 #[unsafe(no_mangle)]
 pub extern "C" fn upglow_message() -> *const c_char {
     MESSAGE.with(|message| {
@@ -148,8 +148,8 @@ pub extern "C" fn upglow_message() -> *const c_char {
     })
 }
 
-/// The name of a status, as in `UPGLOW_STATUS_OUTSIDE`. Any number is allowed: one that is no
-/// status is "unknown status". It lives as long as the program.
+/// The name of a status, such as `UPGLOW_STATUS_OUTSIDE`. Any number is allowed; the name of an
+/// unknown one is "unknown status". The text is valid until the program ends.
 #[unsafe(no_mangle)]
 pub extern "C" fn upglow_status_name(status: i32) -> *const c_char {
     name(status).as_ptr()
@@ -182,24 +182,24 @@ mod tests {
     #[test]
     fn a_panic_becomes_a_status_and_a_message() {
         assert_eq!(guarded(|| panic!("{} bells", 3)), UpglowStatus::Internal);
-        assert_eq!(message(), "a fault of upglow: 3 bells");
+        assert_eq!(message(), "internal error of upglow: 3 bells");
         assert_eq!(guarded(|| std::panic::panic_any(3)), UpglowStatus::Internal);
-        assert_eq!(message(), "a fault of upglow: no reason given");
+        assert_eq!(message(), "internal error of upglow: no reason given");
     }
 
     #[test]
-    fn a_message_is_its_threads_own_and_outlasts_success() {
+    fn each_thread_has_its_own_message_which_success_does_not_change() {
         assert_eq!(
             guarded(|| Err(Failure::Overlap { argument: "xyz" })),
             UpglowStatus::InvalidArgument
         );
         std::thread::spawn(|| assert_eq!(message(), "")).join().unwrap();
         assert_eq!(guarded(|| Ok(())), UpglowStatus::Ok);
-        assert_eq!(message(), "xyz overlaps rgb, expected memory of its own");
+        assert_eq!(message(), "xyz overlaps rgb, expected separate memory");
     }
 
     #[test]
-    fn a_long_message_is_cut_between_characters() {
+    fn a_long_message_is_truncated_between_characters() {
         keep(format_args!("{}", "é".repeat(MESSAGE_BYTES)));
         assert_eq!(message(), "é".repeat((MESSAGE_BYTES - 1) / 2));
         keep(format_args!("a\0b"));

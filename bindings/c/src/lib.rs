@@ -1,22 +1,22 @@
 //! The C library: every function of `include/upglow.h`.
 //!
-//! A function here checks what it was given, converts, calls `upglow` once and converts back. The
-//! header is generated from this crate by `cargo xtask header`; `README.md` beside it is the guide
-//! for C and C++.
+//! Each function checks and converts its arguments, calls `upglow` once, and converts the result. The
+//! header is generated from this crate by `cargo xtask header`; `README.md` is the guide for C and
+//! C++.
 //!
 //! - failures: [`UpglowStatus`], [`upglow_message`]
 //! - cubes: [`UpglowCube`], [`UpglowCubeFacts`]
-//! - materials: [`UpglowMaterial`], a look-up in the caller's memory, and what it answers
+//! - materials: [`UpglowMaterial`], a look-up into the caller's memory, and its evaluation
 //! - wavelengths drawn: [`UpglowSample`]
 //! - colors of whole images: [`UpglowColors`]
 //!
 //! # Safety
 //!
-//! Every function that takes pointers is `unsafe`, and asks the same of each of them: it is null,
-//! which is refused, or it points to what its type says, alive and initialized, for as many values
-//! as the function's text says; what it writes to, nobody else reads or writes meanwhile.
+//! Every function that takes pointers is `unsafe`, with the same condition on each of them: it is
+//! null, which is refused, or points to live, initialized values of its type, as many as the
+//! function's documentation says; and nobody else accesses memory that the function writes to.
 
-// Apart, so that they stay in the order in which the header is read.
+// Separated by blank lines, so that rustfmt keeps the header's order.
 mod version;
 
 mod failure;

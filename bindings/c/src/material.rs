@@ -1,4 +1,4 @@
-//! Materials: a look-up in the caller's memory, and what it answers.
+//! Materials: look-ups into the caller's memory, and their evaluation.
 
 use std::mem::MaybeUninit;
 
@@ -10,19 +10,19 @@ use crate::pointer::{
     Output, array, assert_shared_by_threads, borrowed, refuse_overlap, slice, slice_mut,
 };
 
-/// The material of one color, in memory of the caller's own: on the stack, in an array, in another
-/// struct. Nothing is allocated for it and nothing is to be freed. It may be copied.
+/// The material of one color, in the caller's memory: on the stack, in an array, in another struct.
+/// Nothing is allocated for it and nothing has to be freed. It may be copied.
 ///
-/// `upglow_look_up` fills it; its content is the library's business. It refers to its cube, which
-/// must outlive it. One that is all zeros is empty and refused. Threads may read it at once.
+/// `upglow_look_up` fills it; its content is private. It refers to its cube, which must outlive it.
+/// A material of all zeros is empty, and functions refuse it. Any number of threads may read one.
 #[repr(C, align(16))]
 #[derive(Clone, Copy, Debug)]
 pub struct UpglowMaterial {
-    /// More room than this version needs, so that a later one fits as well.
+    /// More room than this version needs, in reserve for later ones.
     words: [MaybeUninit<u64>; 32],
 }
 
-/// What lies in an [`UpglowMaterial`] once it is filled.
+/// The content of an [`UpglowMaterial`] after a look-up.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 struct Filled<'c> {
@@ -30,7 +30,7 @@ struct Filled<'c> {
     blend: PackedMixture<'c>,
 }
 
-/// Says that a material is filled: neither zeros nor numbers that memory is likely to hold.
+/// Marks a material as filled: a value that uninitialized memory is unlikely to have.
 const MARK: u64 = 0x7567_6c6f_775f_6d31;
 
 const _: () = assert!(size_of::<Filled<'_>>() <= size_of::<UpglowMaterial>());
@@ -60,8 +60,8 @@ pub(crate) unsafe fn looked_up<'c>(
 ///
 /// It allocates nothing. The material refers to the cube.
 ///
-/// Fails with `UPGLOW_STATUS_OUTSIDE` if a component is not a number in 0 to 1: whoever wants the
-/// nearest color of the cube clamps first.
+/// Fails with `UPGLOW_STATUS_OUTSIDE` if a component is not in 0 to 1; clamp first to get the nearest
+/// color of the cube.
 ///
 /// cbindgen:ptrs-as-arrays=[[rgb; 3]]
 ///
@@ -87,9 +87,9 @@ pub unsafe extern "C" fn upglow_look_up(
 /// Looks up the materials of `count` colors.
 ///
 /// `rgb` is `[count][3]`: red, green, blue of each color in turn, linear, in the cube's space; `materials`
-/// is `[count]`, and must not overlap it. It allocates nothing. A color outside the cube, or not a
-/// number, has no material: it gets an empty one, all zeros, which is refused wherever it is used; the
-/// others are right, and `*outside`, unless `outside` is null, receives how many those are.
+/// is `[count]`, and must not overlap it. It allocates nothing. Colors outside the cube, or NaN, get
+/// an empty material, all zeros, which functions refuse; `*outside`, unless `outside` is null, receives
+/// the number of these colors.
 ///
 /// # Safety
 ///
@@ -130,7 +130,7 @@ pub unsafe extern "C" fn upglow_look_up_many(
 }
 
 impl UpglowMaterial {
-    /// One that every function refuses.
+    /// A material that every function refuses.
     const EMPTY: Self = Self { words: [MaybeUninit::new(0); 32] };
 
     fn fill(&mut self, blend: PackedMixture<'_>) {
@@ -140,7 +140,7 @@ impl UpglowMaterial {
     }
 }
 
-/// Writes what a material answers to `place`, which messages call `name`.
+/// Writes a result of `ask` for a material to `place`, which messages call `name`.
 ///
 /// # Safety
 ///
@@ -159,7 +159,7 @@ pub(crate) unsafe fn answer<T>(
     })
 }
 
-/// [`answer`] to a question with `N` values at `values`, which messages call `values_name`.
+/// [`answer`] for an `ask` with `N` values at `values`, which messages call `values_name`.
 ///
 /// # Safety
 ///
@@ -182,7 +182,7 @@ pub(crate) unsafe fn answer_to<const N: usize, T>(
     })
 }
 
-/// Whether any light comes back at another wavelength.
+/// Whether the material re-radiates any light at another wavelength.
 ///
 /// # Safety
 ///
@@ -199,7 +199,7 @@ pub unsafe extern "C" fn upglow_is_fluorescent(
 /// Share of incident light at `lambda_nm` that is reflected at the same wavelength, 0 to 1; divided by
 /// pi it is the elastic BRDF.
 ///
-/// Any wavelength is allowed; beyond 0 to 10000 nm the answer is that of the nearer end.
+/// Any wavelength is allowed; those outside 0 to 10000 nm are clamped.
 ///
 /// # Safety
 ///
@@ -214,7 +214,7 @@ pub unsafe extern "C" fn upglow_reflectance(
     unsafe { answer(material, (reflectance, "reflectance"), |m| m.reflectance(lambda_nm)) }
 }
 
-/// `upglow_reflectance` at 4 wavelengths (nm), faster than one by one. Both arrays may be the same.
+/// `upglow_reflectance` at 4 wavelengths (nm), faster than one at a time. Both arrays may be the same.
 ///
 /// cbindgen:ptrs-as-arrays=[[lambda_nm; 4], [reflectance; 4]]
 ///
@@ -235,7 +235,7 @@ pub unsafe extern "C" fn upglow_reflectance_4(
     }
 }
 
-/// `upglow_reflectance` at 8 wavelengths (nm), faster than one by one. Both arrays may be the same.
+/// `upglow_reflectance` at 8 wavelengths (nm), faster than one at a time. Both arrays may be the same.
 ///
 /// cbindgen:ptrs-as-arrays=[[lambda_nm; 8], [reflectance; 8]]
 ///
@@ -256,8 +256,8 @@ pub unsafe extern "C" fn upglow_reflectance_8(
     }
 }
 
-/// Energy that comes out per nm at `out_nm` by fluorescence, per unit that came in at `in_nm`; in
-/// 1/nm, 0 or more. What is reflected at the same wavelength is not part of it.
+/// Energy re-radiated per nm at `out_nm`, per unit of energy incident at `in_nm`; 1/nm, 0 or more.
+/// It does not include reflection at the same wavelength.
 ///
 /// # Safety
 ///
@@ -273,7 +273,7 @@ pub unsafe extern "C" fn upglow_reradiation(
     unsafe { answer(material, (per_nm, "per_nm"), |m| m.reradiation_per_nm(in_nm, out_nm)) }
 }
 
-/// Share of incident light at `in_nm` that comes out at any wavelength, 0 to 1: reflectance and the
+/// Share of incident light at `in_nm` that leaves at any wavelength, 0 to 1: reflectance plus the
 /// integral of the re-radiation.
 ///
 /// # Safety

@@ -1,4 +1,4 @@
-//! Pointers from C, checked for what can be checked.
+//! Pointers from C, checked as far as possible.
 
 use std::ffi::{CStr, c_char};
 use std::ptr::NonNull;
@@ -14,7 +14,7 @@ fn checked<T>(pointer: *const T, argument: &'static str) -> Result<NonNull<T>, F
     Ok(checked)
 }
 
-/// What a pointer points to.
+/// The value that a pointer points to.
 ///
 /// # Safety
 ///
@@ -39,11 +39,11 @@ pub(crate) unsafe fn array<T: Copy, const N: usize>(
     pointer: *const T,
     argument: &'static str,
 ) -> Result<[T; N], Failure> {
-    // SAFETY: an array is its values in a row; the caller promises the rest.
+    // SAFETY: an array has the layout of its values; the caller promises the rest.
     unsafe { borrowed(pointer.cast::<[T; N]>(), argument) }.copied()
 }
 
-/// An array of `length` values; none if the length is 0, whatever the pointer.
+/// An array of `length` values; empty for length 0, whatever the pointer.
 ///
 /// # Safety
 ///
@@ -53,16 +53,12 @@ pub(crate) unsafe fn slice<'a, T>(
     length: usize,
     argument: &'static str,
 ) -> Result<&'a [T], Failure> {
-    if length == 0 {
-        return Ok(&[]);
-    }
-    fits::<T>(length, argument)?;
-    let pointer = checked(pointer, argument)?;
+    let values = checked_values(pointer, length, argument)?;
     // SAFETY: neither null nor misaligned, no larger than any object; the caller promises the rest.
-    Ok(unsafe { NonNull::slice_from_raw_parts(pointer, length).as_ref() })
+    Ok(unsafe { values.as_ref() })
 }
 
-/// An array of `length` values to write; none if the length is 0, whatever the pointer.
+/// An array of `length` values to write; empty for length 0, whatever the pointer.
 ///
 /// # Safety
 ///
@@ -73,25 +69,27 @@ pub(crate) unsafe fn slice_mut<'a, T>(
     length: usize,
     argument: &'static str,
 ) -> Result<&'a mut [T], Failure> {
-    if length == 0 {
-        return Ok(&mut []);
-    }
-    fits::<T>(length, argument)?;
-    let pointer = checked(pointer, argument)?;
+    let mut values = checked_values(pointer.cast_const(), length, argument)?;
     // SAFETY: neither null nor misaligned, no larger than any object; the caller promises the rest.
-    Ok(unsafe { NonNull::slice_from_raw_parts(pointer, length).as_mut() })
+    Ok(unsafe { values.as_mut() })
 }
 
-/// No object has more bytes than `isize` counts: a longer array is a negative number gone wrong.
-fn fits<T>(length: usize, argument: &'static str) -> Result<(), Failure> {
+/// An array of `length` values, of any address for length 0.
+fn checked_values<T>(
+    pointer: *const T,
+    length: usize,
+    argument: &'static str,
+) -> Result<NonNull<[T]>, Failure> {
+    // No object is larger; a greater length is often a negative number, converted.
     let most = isize::MAX.unsigned_abs() / size_of::<T>();
     if length > most {
-        return Err(Failure::TooMany { argument, what: "values", found: length, most });
+        return Err(Failure::TooMany { argument, found: length, most });
     }
-    Ok(())
+    let first = if length == 0 { NonNull::dangling() } else { checked(pointer, argument)? };
+    Ok(NonNull::slice_from_raw_parts(first, length))
 }
 
-/// Refuses to write `count` values where as many colors are read: Rust takes the two to be apart.
+/// Refuses to write `count` values where as many colors are read: Rust requires them not to overlap.
 pub(crate) fn refuse_overlap<T>(
     rgb: *const f32,
     written: *const T,
@@ -122,7 +120,7 @@ pub(crate) unsafe fn text<'a>(
     Ok(unsafe { CStr::from_ptr(pointer.as_ptr()) })
 }
 
-/// A place for an answer, which is written last or never.
+/// Memory for a result, which is written at the end of a call that succeeds, and never otherwise.
 #[derive(Debug)]
 pub(crate) struct Output<T>(NonNull<T>);
 
@@ -136,7 +134,7 @@ impl<T> Output<T> {
         checked(pointer, argument).map(Self)
     }
 
-    /// The same place, for a `U`.
+    /// The same memory, for a `U`.
     ///
     /// # Safety
     ///
@@ -153,7 +151,7 @@ impl<T> Output<T> {
     }
 }
 
-/// Frees what `Box::into_raw` made; null does nothing. The status of a call that does no more.
+/// Frees what `Box::into_raw` made; null does nothing. Returns the status of the call.
 ///
 /// # Safety
 ///
@@ -168,7 +166,7 @@ pub(crate) unsafe fn destroy<T>(pointer: *mut T) -> UpglowStatus {
     })
 }
 
-/// Compiles where threads may share a `T`.
+/// Compiles only if threads may share a `T`.
 pub(crate) const fn assert_shared_by_threads<T: Send + Sync>() {}
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Wavelengths drawn from a material, and how likely they were.
+//! Wavelengths drawn from a material, their probabilities and densities.
 
 use upglow::{Bispectral, Draw, Sample};
 
@@ -9,7 +9,7 @@ use crate::material::{UpglowMaterial, answer, answer_to};
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UpglowDraw {
-    /// Nothing was drawn: the material carries no light at the known wavelength. The path ends.
+    /// Nothing was drawn: the light is absorbed, and the path ends.
     Absorbed = 0,
     /// The wavelength was kept.
     Elastic = 1,
@@ -28,32 +28,29 @@ pub struct UpglowSample {
     pub draw: UpglowDraw,
     /// The wavelength drawn, nm; the known one if nothing was drawn.
     pub lambda_nm: f32,
-    /// Factor for the path's throughput: what the material carries divided by how likely the draw
-    /// was. It depends on the known wavelength alone; 0 if nothing was drawn.
+    /// Factor for the path's throughput: the material's value divided by the probability or density
+    /// of the draw. It depends on the known wavelength alone; 0 if nothing was drawn.
     pub throughput: f32,
-    /// How likely it was to keep the wavelength, 0 to 1; 0 unless it was kept.
+    /// Probability of keeping the wavelength, 0 to 1; 0 unless it was kept.
     pub probability: f32,
-    /// The density of the wavelength drawn, 1/nm; 0 unless it was changed.
+    /// Density of the wavelength drawn, 1/nm; 0 unless it was changed.
     pub pdf_per_nm: f32,
 }
 
 impl UpglowSample {
     fn new(known_nm: f32, sample: Option<Sample<f32>>) -> Self {
-        let Some(Sample { nm: lambda_nm, throughput, draw }) = sample else {
-            let draw = UpglowDraw::Absorbed;
-            let (throughput, probability, pdf_per_nm) = (0.0, 0.0, 0.0);
-            return Self { draw, lambda_nm: known_nm, throughput, probability, pdf_per_nm };
-        };
-        let (draw, probability, pdf_per_nm) = match draw {
-            Draw::Elastic { probability } => (UpglowDraw::Elastic, probability, 0.0),
-            Draw::Fluorescent { per_nm } => (UpglowDraw::Fluorescent, 0.0, per_nm),
+        let (lambda_nm, throughput) = sample.map_or((known_nm, 0.0), |s| (s.nm, s.throughput));
+        let (draw, probability, pdf_per_nm) = match sample.map(|s| s.draw) {
+            None => (UpglowDraw::Absorbed, 0.0, 0.0),
+            Some(Draw::Elastic { probability }) => (UpglowDraw::Elastic, probability, 0.0),
+            Some(Draw::Fluorescent { per_nm }) => (UpglowDraw::Fluorescent, 0.0, per_nm),
         };
         Self { draw, lambda_nm, throughput, probability, pdf_per_nm }
     }
 }
 
-/// Draws the wavelength of incident light, given that of the light that leaves: a path from the
-/// camera.
+/// Draws the wavelength of incident light, given that of the light that leaves, for paths that start
+/// at the camera.
 ///
 /// `u` are 2 independent numbers in 0 to 1, 1 excluded; the first chooses between reflection and
 /// fluorescence, the second draws the wavelength.
@@ -112,8 +109,8 @@ pub unsafe extern "C" fn upglow_incident_elastic_probability(
     }
 }
 
-/// Draws the wavelength of the light that leaves, given that of incident light: a path from the
-/// light.
+/// Draws the wavelength of the light that leaves, given that of incident light, for paths that start
+/// at a light.
 ///
 /// `u` are 2 independent numbers in 0 to 1, 1 excluded; the first chooses between reflection and
 /// fluorescence, the second draws the wavelength.

@@ -1,9 +1,9 @@
-//! Which library this is.
+//! The version of the library.
 
 use std::ffi::{CStr, c_char};
 
-/// First number of the version that this header describes. While it is 0, a change of the second
-/// may change any function.
+/// First number of the version that this header describes. While it is 0, any function may change
+/// with the second.
 pub const UPGLOW_VERSION_MAJOR: u32 = 0;
 /// Second number of the version that this header describes.
 pub const UPGLOW_VERSION_MINOR: u32 = 1;
@@ -16,7 +16,8 @@ const VERSION: &CStr =
         Err(_) => panic!("a version has no zero byte"),
     };
 
-/// The version of the library that is linked, as in "0.1.0". It lives as long as the program.
+/// The version of the library that is linked, such as "0.1.0". The text is valid until the program
+/// ends.
 #[unsafe(no_mangle)]
 pub extern "C" fn upglow_version() -> *const c_char {
     VERSION.as_ptr()

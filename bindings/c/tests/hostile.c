@@ -24,7 +24,7 @@ static void expect(int holds, const char *what) {
 #define ACCEPTED(call) REFUSED(call, UPGLOW_STATUS_OK)
 #define HOLDS(condition) expect((condition) ? 1 : 0, #condition)
 
-/* The whole content of a file; NULL if there is none. */
+/* The whole content of a file; NULL if it cannot be read. */
 static uint8_t *content(const char *path, size_t *length) {
     FILE *file = fopen(path, "rb");
     if (file == NULL) {
@@ -211,7 +211,7 @@ static void arrays_of_colors(const UpglowCube *cube) {
     upglow_colors_destroy(colors);
 }
 
-/* Many colors at once: as one by one, and an empty material where there is none. */
+/* Many colors at once: the same as one at a time, and empty materials for colors outside. */
 static void many_materials(const UpglowCube *cube) {
     enum { COUNT = 37 };
     const UpglowStatus invalid = UPGLOW_STATUS_INVALID_ARGUMENT;
@@ -229,7 +229,7 @@ static void many_materials(const UpglowCube *cube) {
     size_t outside = 7;
     REFUSED(upglow_look_up_many(cube, rgb[0], many, SIZE_MAX / 2, &outside), invalid);
     REFUSED(upglow_look_up_many(cube, (const float *)many + 3, many, COUNT, &outside), invalid);
-    HOLDS(strcmp(upglow_message(), "materials overlaps rgb, expected memory of its own") == 0);
+    HOLDS(strcmp(upglow_message(), "materials overlaps rgb, expected separate memory") == 0);
     HOLDS(outside == 7 && memcmp(&one, many, sizeof one) == 0);
     ACCEPTED(upglow_look_up_many(cube, NULL, NULL, 0, &outside));
     HOLDS(outside == 0);
@@ -250,7 +250,7 @@ static void many_materials(const UpglowCube *cube) {
     free(many);
 }
 
-/* Lights that were measured: which are none, and that white is white under each. */
+/* Measured lights: invalid ones are refused, and white has Y = 1 under the others. */
 static void sampled_lights(const UpglowCube *cube) {
     enum { COUNT = 54 };
     const UpglowStatus invalid = UPGLOW_STATUS_INVALID_ARGUMENT, null = UPGLOW_STATUS_NULL_POINTER;
