@@ -22,7 +22,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 import upglow
 
-# Linear ACEScg. No reflectance shows either.
+# Linear ACEScg. No reflectance matches either.
 MAGENTA, MINT = [0.94, 0.2, 0.46], [0.4, 1.0, 0.8]
 WHITE = {"type": "diffuse", "reflectance": {"type": "uniform", "value": 0.7}}
 
@@ -67,7 +67,7 @@ class Upsampling:
 
 
 def light(name: str, scale: float = 1.0) -> Scene:
-    """The spectrum of a light; `scale` is relative to D65 that shows white as Y = 1."""
+    """The spectrum of a light; `scale` is relative to D65 under which white has Y = 1."""
     daylight = upglow.Illuminant("D65")
     if name == "daylight":
         return upglow.mitsuba.spectrum(daylight, scale)
@@ -146,14 +146,14 @@ def render(scene: Scene, spp: int) -> tuple[Array, float]:
 
 
 def displayed(xyz: Array, exposure: float) -> NDArray[np.uint8]:
-    """As an sRGB display shows it: what is beyond its colors or too bright is clipped."""
+    """The picture in sRGB: colors outside its gamut or too bright are clipped."""
     linear = np.clip(xyz @ upglow.Contract(space="srgb").rgb_from_xyz.T * exposure, 0, 1)
     encoded = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
     return np.round(255 * encoded).astype(np.uint8)
 
 
 def difference(contract: upglow.Contract, xyz: Array, color: Color) -> float:
-    """CIEDE2000 of a measured color against the one that was asked for."""
+    """CIEDE2000 of a measured color against the requested one."""
     white = contract.white_xyz
     chromaticity = white[:2] / white.sum()
     asked = contract.xyz_from_rgb @ color

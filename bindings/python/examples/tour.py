@@ -15,7 +15,7 @@ print(cube)
 print(f"{summary.exact} of {summary.nodes} nodes show their color exactly")
 
 # %% A brown needs no fluorescence. A mint does, and is shown with it. The dyes are too weak for a
-# strong magenta, and nothing at all shows the green of the space.
+# strong magenta, and no material at all can reproduce the green of the space.
 mint, brown = [0.4, 1.0, 0.8], [0.35, 0.2, 0.1]
 colors = {"brown": brown, "mint": mint, "magenta": [0.9, 0.1, 0.8], "green": [0.0, 1.0, 0.0]}
 for name, rgb in colors.items():

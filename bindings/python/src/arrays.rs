@@ -7,11 +7,11 @@ use upglow_color::Xyz;
 
 use crate::errors::value_error;
 
-/// Single or double precision: what the numbers of an array ask for.
+/// Single or double precision, the element type of an array.
 pub(crate) trait Number: Element + Copy + Send + Sync + Into<f64> {
     const NAN: Self;
 
-    /// The nearest number.
+    /// The nearest number of this precision.
     fn from_double(value: f64) -> Self;
 }
 
@@ -26,7 +26,7 @@ impl Number for f64 {
 impl Number for f32 {
     const NAN: Self = Self::NAN;
 
-    #[expect(clippy::cast_possible_truncation, reason = "rounding is what it is for")]
+    #[expect(clippy::cast_possible_truncation, reason = "its purpose is to round")]
     fn from_double(value: f64) -> Self {
         value as Self
     }
@@ -44,10 +44,11 @@ pub(crate) fn triples<'a, T: Element>(
     Ok(array.as_slice()?.as_chunks().0)
 }
 
-/// Numbers that a thread makes at a time: enough that handing them out costs nothing.
+/// Numbers that a thread computes at a time: enough that the cost of distributing them vanishes.
 const BATCH: usize = 4096;
 
-/// Fills rows of `width` numbers, each alone, so that threads change nothing. Few are filled here.
+/// Fills rows of `width` numbers in parallel; a few are filled on this thread. Each row is computed
+/// independently, so the number of threads changes no result.
 pub(crate) fn fill<T: Send>(out: &mut [T], width: usize, work: impl Fn(usize, &mut [T]) + Sync) {
     if width == 0 {
         return;

@@ -1,4 +1,4 @@
-//! Colors of arrays of RGB under a light.
+//! Colors of a cube's materials under a light, for arrays of RGB.
 
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -21,12 +21,12 @@ pub(crate) struct Colors {
     colorimetry: Colorimetry,
 }
 
-/// What a light is scaled to.
+/// How a light is scaled.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Scale {
-    /// White is Y = 1 under any light.
+    /// White has Y = 1 under any light.
     White,
-    /// The light has as much power as the cube's own.
+    /// The light has the power of the cube's own.
     Power,
 }
 
@@ -62,7 +62,7 @@ pub(crate) fn colors(
 
 #[pymethods]
 impl Colors {
-    /// X, Y, Z of each RGB, `[color][X Y Z]`; not-a-number outside 0..=1.
+    /// X, Y, Z of each RGB, `[color][X Y Z]`; NaN outside 0..=1.
     fn xyz<'py>(
         &self,
         py: Python<'py>,
@@ -72,7 +72,7 @@ impl Colors {
         self.each(py, triples(&rgb)?, threads, |_| ())
     }
 
-    /// Linear RGB under the light of each RGB, `[color][channel]`; not-a-number outside 0..=1.
+    /// Linear RGB under the light of each RGB, `[color][channel]`; NaN outside 0..=1.
     fn rgb<'py>(
         &self,
         py: Python<'py>,
@@ -95,13 +95,13 @@ impl Colors {
         threads: Option<usize>,
     ) -> PyResult<Bound<'py, PyArray1<f32>>> {
         let rgb = triples(&rgb)?;
-        let shown = self.each(py, rgb, threads, |_| ())?;
-        let shown = shown.readonly();
-        let shown = triples(&shown)?;
+        let found = self.each(py, rgb, threads, |_| ())?;
+        let found = found.readonly();
+        let found = triples(&found)?;
         let mut out = vec![0.0; rgb.len()];
         let difference = |row: usize| {
             let target = self.colorimetry.xyz_from_rgb(LinearRgb(rgb[row].map(f64::from)));
-            Metric::De2000.distance(&self.colorimetry, target, Xyz(shown[row].map(f64::from)))
+            Metric::De2000.distance(&self.colorimetry, target, Xyz(found[row].map(f64::from)))
         };
         py.detach(|| {
             on_threads(threads, || {

@@ -1,4 +1,4 @@
-//! What RGB means.
+//! Contracts: what RGB means.
 
 use std::sync::OnceLock;
 
@@ -21,7 +21,7 @@ pub(crate) struct Contract {
     standing: OnceLock<StandingTable>,
 }
 
-/// An RGB space as it is given.
+/// An RGB space, as Python gives it.
 #[derive(FromPyObject)]
 enum Space {
     Name(String),
@@ -35,7 +35,7 @@ impl Contract {
         Self { contract, colorimetry, standing: OnceLock::new() }
     }
 
-    /// Where colors stand under this contract; it fills as it is asked.
+    /// What materials can reproduce colors under this contract; made at the first call.
     pub(crate) fn standing_table(&self) -> &StandingTable {
         self.standing.get_or_init(|| StandingTable::new(&self.contract))
     }
@@ -96,7 +96,7 @@ impl Contract {
         Illuminant(self.contract.illuminant.clone())
     }
 
-    /// The eye.
+    /// The observer.
     #[getter]
     fn observer(&self) -> Observer {
         Observer(self.contract.observer.clone())

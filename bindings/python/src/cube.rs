@@ -1,4 +1,4 @@
-//! Cubes: files, nodes, and what they were made of.
+//! Cubes: files, nodes, contract and model.
 
 use std::path::PathBuf;
 use std::sync::OnceLock;
@@ -65,7 +65,7 @@ impl Cube {
         py.detach(|| upglow::Cube::from_bytes(content)).map(Self::of).map_err(value_error)
     }
 
-    /// Writes the cube's file, whole or not at all.
+    /// Writes the cube's file, completely or not at all.
     fn write(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         py.detach(|| self.cube.write(path)).map_err(|error| match error {
             CubeFileError::Write { path, source: AsideError::Io(source) } => {
@@ -92,12 +92,12 @@ impl Cube {
         self.cube.resolution()
     }
 
-    /// What the file says of itself, as JSON.
+    /// The file's header, as JSON.
     fn header_json(&self) -> String {
         self.cube.header_json()
     }
 
-    /// `reflectance`, `dye`, `fluorescence` and `de2000` of every node, one a row.
+    /// `reflectance`, `dye`, `fluorescence` and `de2000` of every node, one per row.
     fn nodes<'py>(&self, py: Python<'py>) -> PyResult<Arrays<'py>> {
         arrays(py, self.cube.nodes())
     }

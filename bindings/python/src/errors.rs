@@ -1,18 +1,30 @@
-//! Rust's errors as Python's own, with the same text.
+//! Conversion of Rust's errors to Python exceptions with the same text.
 
 use std::fmt::Display;
 use std::io;
 use std::path::Path;
 
-use pyo3::PyErr;
 use pyo3::exceptions::{PyOSError, PyValueError};
+use pyo3::{PyErr, PyResult};
 
-/// What was given is not what it should be.
+/// A `ValueError`, for an invalid argument.
 pub(crate) fn value_error(error: impl Display) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
-/// A file cannot be read or written: `FileNotFoundError`, `PermissionError` and their like.
+/// Checks that an argument is in a range, which NaN never is.
+pub(crate) fn check_range<T: PartialOrd + Display>(
+    name: &str,
+    found: T,
+    [least, most]: [T; 2],
+) -> PyResult<()> {
+    if found >= least && found <= most {
+        return Ok(());
+    }
+    Err(value_error(format_args!("{name} is {found}, expected {least} to {most}")))
+}
+
+/// An `OSError` for a file that cannot be read or written: `FileNotFoundError`, `PermissionError` …
 pub(crate) fn os_error(path: &Path, error: &io::Error) -> PyErr {
     let text = error.to_string();
     match error.raw_os_error() {
@@ -20,7 +32,7 @@ pub(crate) fn os_error(path: &Path, error: &io::Error) -> PyErr {
             let end = text.find(" (os error").unwrap_or(text.len());
             PyOSError::new_err((number, text[..end].to_owned(), path.as_os_str().to_owned()))
         }
-        // An error that another one wraps: its kind still names Python's class.
+        // Without a number the class that Python raises follows from the kind.
         None => io::Error::new(error.kind(), format!("{}: {text}", path.display())).into(),
     }
 }

@@ -1,4 +1,4 @@
-//! What figures are drawn from.
+//! The numbers behind the figures of `upglow-study`.
 
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
@@ -8,13 +8,13 @@ use upglow_study::{ChromaticityDiagram, Layer, Mixing};
 
 use crate::contract::Contract;
 use crate::cube::Cube;
-use crate::errors::value_error;
+use crate::errors::{check_range, value_error};
 use crate::model::Model;
 use crate::observer::Observer;
 use crate::threads::on_threads;
 use crate::word::Word;
 
-/// Most points along one axis of an array: more are a typing error, they would fill the memory.
+/// Most points along one axis of an array: more would fill the memory, and are a typing error.
 const MOST_POINTS: usize = 2048;
 
 /// Numbers, `[row][column]`.
@@ -29,21 +29,7 @@ fn rows<'py, const N: usize>(
     PyArray1::from_vec(py, numbers).reshape([count, N])
 }
 
-fn check_points(name: &str, found: usize) -> PyResult<()> {
-    if (2..=MOST_POINTS).contains(&found) {
-        return Ok(());
-    }
-    Err(value_error(format_args!("{name} is {found}, expected 2 to {MOST_POINTS}")))
-}
-
-fn check_blue(blue: f64) -> PyResult<()> {
-    if (0.0..=1.0).contains(&blue) {
-        return Ok(());
-    }
-    Err(value_error(format_args!("blue is {blue}, expected 0 to 1")))
-}
-
-/// Chromaticity, or not-a-number where there is none.
+/// A chromaticity; NaN if it is undefined, as that of black is.
 fn xy(chromaticity: Option<[f64; 2]>) -> [f64; 2] {
     chromaticity.unwrap_or([f64::NAN; 2])
 }
@@ -80,11 +66,12 @@ pub(crate) fn node_colors<'py>(
     Ok((rows(py, colors.iter().map(|color| color.0))?, rows(py, chromaticities)?))
 }
 
-/// Blue, linear RGB, ΔE00, and whether all nodes that take part are exact.
+/// Blue, linear RGB, ΔE00, and whether all nodes that are mixed are exact.
 type LayerArrays<'py> = (f64, Rows<'py>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<bool>>);
 
-/// Blue, linear RGB shown, `[green · red][channel]`, ΔE00 from what is asked for, and whether all nodes
-/// that take part are exact: of the layer of nodes nearest to `blue`, or of `side`² colors at `blue`.
+/// Blue, linear RGB of the materials, `[green · red][channel]`, ΔE00 to the colors that they stand
+/// for, and whether all nodes that are mixed are exact: of the layer of nodes nearest to `blue`, or
+/// of `side`² colors at `blue`.
 #[pyfunction]
 pub(crate) fn layer<'py>(
     py: Python<'py>,
@@ -94,8 +81,8 @@ pub(crate) fn layer<'py>(
     interpolation: Word<Interpolation>,
     threads: Option<usize>,
 ) -> PyResult<LayerArrays<'py>> {
-    check_blue(blue)?;
-    check_points("side", side.unwrap_or(cube.cube.resolution()))?;
+    check_range("blue", blue, [0.0, 1.0])?;
+    check_range("side", side.unwrap_or(cube.cube.resolution()), [2, MOST_POINTS])?;
     let cube = &cube.cube;
     let make = || match side {
         None => Layer::of_nodes(cube, Layer::nearest_node(cube.resolution(), blue)),
@@ -113,8 +100,9 @@ pub(crate) fn layer<'py>(
 /// Names, absorption, emission (1/nm), peaks of both (nm) and chromaticity of the emission.
 type DyeArrays<'py> = (Vec<String>, Rows<'py>, Rows<'py>, Rows<'py>, Rows<'py>);
 
-/// Of each dye of a model, as an observer sees it: name, absorption and emission (1/nm) at 300 to
-/// 830 nm, `[dye][wavelength]`, peaks of both (nm) and chromaticity of the emission, `[dye][2]`.
+/// For each dye of a model: name, absorption and emission (1/nm) at 300 to 830 nm,
+/// `[dye][wavelength]`, peaks of both (nm) and chromaticity of the emission for an observer,
+/// `[dye][2]`.
 #[pyfunction]
 pub(crate) fn dye_spectra<'py>(
     py: Python<'py>,
@@ -126,9 +114,8 @@ pub(crate) fn dye_spectra<'py>(
         return Err(value_error(format_args!("the model is {found}, expected dyes")));
     };
     let dyes = upglow_study::dye_spectra(model, &observer.0);
-    let curve = |values: &[f64]| values.to_vec();
-    let absorptions: Vec<_> = dyes.iter().map(|dye| curve(dye.absorption.values())).collect();
-    let emissions: Vec<_> = dyes.iter().map(|dye| curve(dye.emission.values())).collect();
+    let absorptions: Vec<_> = dyes.iter().map(|dye| dye.absorption.values().to_vec()).collect();
+    let emissions: Vec<_> = dyes.iter().map(|dye| dye.emission.values().to_vec()).collect();
     Ok((
         dyes.iter().map(|dye| dye.name.to_owned()).collect(),
         PyArray2::from_vec2(py, &absorptions)?,
@@ -138,7 +125,7 @@ pub(crate) fn dye_spectra<'py>(
     ))
 }
 
-/// What materials a solid of colors is of.
+/// The materials whose colors fill a solid.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Materials {
     Reflectance,
@@ -157,7 +144,7 @@ pub(crate) fn solid_surface<'py>(
     steps: usize,
     threads: Option<usize>,
 ) -> PyResult<(Rows<'py>, Rows<'py>)> {
-    check_points("steps", steps)?;
+    check_range("steps", steps, [2, MOST_POINTS])?;
     let colorimetry = &contract.colorimetry;
     let solid = match materials.0 {
         Materials::Reflectance => ColorSolid::reflectance(colorimetry),
@@ -172,8 +159,8 @@ pub(crate) fn solid_surface<'py>(
     Ok((rows(py, surface.iter().map(|color| color.0))?, rows(py, lab)?))
 }
 
-/// Reflectances between two that are given by shift (nm), width (nm) and slope (1/nm), at 300 to
-/// 830 nm, `[share][wavelength]`; what is mixed are `coefficients`, `spectra` or `features`.
+/// Reflectances interpolated between two, which are given by shift (nm), width (nm) and slope
+/// (1/nm), at 300 to 830 nm, `[share][wavelength]`.
 #[pyfunction]
 pub(crate) fn mixed_reflectances<'py>(
     py: Python<'py>,

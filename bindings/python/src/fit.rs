@@ -1,4 +1,4 @@
-//! Cubes built and colors fitted.
+//! Building cubes and fitting colors.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -19,7 +19,7 @@ use crate::threads::on_threads;
 use crate::watch::{Watcher, watched};
 use crate::word::Word;
 
-/// Metric, slope limit (1/nm), method, sweeps as they are given.
+/// Metric, slope limit (1/nm), method and sweeps, as Python gives them.
 type Options = (Word<Metric>, Option<f64>, Word<Method>, Option<u32>);
 
 /// Fits a material for every node of a cube.
@@ -63,7 +63,7 @@ pub(crate) fn fit<'py>(
     arrays(py, &fitted)
 }
 
-/// A material for each RGB; once the watcher has stopped, what is left is never looked at.
+/// A material for each RGB. Once the watcher has stopped, the rest are defaults, which nobody reads.
 fn fit_each(fitter: &Fitter, rgb: &[[f64; 3]], watcher: &Watcher) -> PyResult<Vec<Node>> {
     let done = AtomicUsize::new(0);
     let fit = |rgb: &[f64; 3]| {

@@ -1,11 +1,12 @@
-//! The native half of the Python package `upglow`: what Python hands over is checked and converted,
-//! one call is made, and the answer is converted back. There is no science here.
+//! The native half of the Python package `upglow`: each function checks and converts its arguments,
+//! makes one call of a library crate, and converts the result. There is no science here.
 //!
-//! Arrays come flat: RGB is `[color][channel]`, and Python gives results their shape. Double
-//! precision is answered in double, single in single. Python's lock is released while Rust works.
+//! Arrays are flat: RGB is `[color][channel]`, and Python reshapes the results. Results for arrays
+//! in double precision are double, for those in single precision single. Python's global lock is
+//! released during the work.
 //!
-//! Out of scope: shapes, names of files, and what Python programs read. That is
-//! `python/upglow`, which is the package's public half.
+//! Shapes, names of files and documentation for users belong to `python/upglow`, the public half of
+//! the package.
 
 mod arrays;
 mod color;

@@ -1,4 +1,4 @@
-//! One material for each color, and the nodes around it.
+//! One material per color, and the nodes around a color.
 
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -12,10 +12,10 @@ use crate::errors::value_error;
 use crate::nodes::{Arrays, arrays};
 use crate::threads::on_threads;
 
-/// Texels that a thread works on at a time.
+/// Colors that a thread works on at a time.
 const BATCH: usize = 1024;
 
-/// One material for each RGB; not-a-number outside 0..=1.
+/// One material for each RGB; NaN outside 0..=1.
 #[pyfunction]
 pub(crate) fn polish<'py>(
     py: Python<'py>,
@@ -37,10 +37,10 @@ pub(crate) fn polish<'py>(
     arrays(py, &polished)
 }
 
-/// Numbers of nodes and their weights, `[color][corner]` both.
+/// Indices of nodes and their weights, both `[color][corner]`.
 type NodesAndWeights<'py> = (Bound<'py, PyArray2<usize>>, Bound<'py, PyArray2<f64>>);
 
-/// The four nodes around each RGB; outside 0..=1 their weights are not-a-number.
+/// The four nodes around each RGB; outside 0..=1 their weights are NaN.
 #[pyfunction]
 pub(crate) fn corners<'py>(
     py: Python<'py>,

@@ -1,4 +1,4 @@
-//! What fluoresces.
+//! Models: what fluoresces.
 
 use std::path::PathBuf;
 
@@ -74,12 +74,12 @@ fn set_error(error: &DyeSetError) -> PyErr {
     }
 }
 
-/// How fluorescence is described, and by what rules it gives light back.
+/// How fluorescence is described, and the rules of re-emission.
 #[pyclass(frozen, module = "upglow._upglow")]
 #[derive(Debug)]
 pub(crate) struct Model(pub(crate) upglow::Model);
 
-/// A quantum yield as it is given.
+/// A quantum yield, as Python gives it.
 #[derive(FromPyObject)]
 enum Yield {
     Number(f64),
@@ -135,7 +135,7 @@ impl Model {
         self.0.name()
     }
 
-    /// Dyes whose quantum yield nobody published; a measured yield counts as 1 for them.
+    /// Dyes without a published quantum yield; with `measured`, their yield is taken as 1.
     #[getter]
     fn without_published_yield(&self) -> Vec<String> {
         match &self.0 {

@@ -1,4 +1,4 @@
-//! Nodes as arrays: the numbers that cubes store.
+//! Conversion of nodes, the numbers that cubes store, to and from arrays.
 
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -6,7 +6,7 @@ use upglow::Node;
 
 use crate::arrays::{check_count, triples};
 
-/// `reflectance`, `dye`, `fluorescence` and `de2000` of nodes, one a row.
+/// `reflectance`, `dye`, `fluorescence` and `de2000` of nodes, one per row.
 pub(crate) type Arrays<'py> = (
     Bound<'py, PyArray2<f32>>,
     Bound<'py, PyArray1<u8>>,

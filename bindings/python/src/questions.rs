@@ -1,4 +1,5 @@
-//! What is asked of materials, each at wavelengths of its own: re-radiation, draws, how likely they are.
+//! Evaluation of materials at wavelengths that differ per material: re-radiation, draws and their
+//! densities.
 
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
@@ -7,25 +8,25 @@ use upglow_color::choices;
 
 use crate::arrays::{Number, check_count};
 use crate::cube::Cube;
-use crate::rows::{Rows, Subjects, answers, with_rows};
+use crate::rows::{Subjects, answers, with_rows};
 use crate::word::Word;
 
-/// A question whose answer depends on wavelengths, nm, and for draws on two random numbers.
+/// What is evaluated, at one or two wavelengths (nm) and, for draws, with two random numbers.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Question {
-    /// From in and out.
+    /// Given the incident and the outgoing wavelength.
     Reradiation,
-    /// From in and out.
+    /// Given the incident and the outgoing wavelength.
     IncidentPdf,
-    /// From in and out.
+    /// Given the incident and the outgoing wavelength.
     OutgoingPdf,
-    /// From out.
+    /// Given the outgoing wavelength.
     IncidentElastic,
-    /// From in.
+    /// Given the incident wavelength.
     OutgoingElastic,
-    /// From out and two random numbers.
+    /// Given the outgoing wavelength and two random numbers.
     SampleIncident,
-    /// From in and two random numbers.
+    /// Given the incident wavelength and two random numbers.
     SampleOutgoing,
 }
 
@@ -42,7 +43,7 @@ choices!(
 );
 
 impl Question {
-    /// How many numbers are given for each material, and how many its answer has.
+    /// How many numbers each material is given, and how many its answer has.
     fn counts(self) -> [usize; 2] {
         match self {
             Self::Reradiation | Self::IncidentPdf | Self::OutgoingPdf => [2, 1],
@@ -51,7 +52,7 @@ impl Question {
         }
     }
 
-    /// Writes what a material answers to `given`.
+    /// Writes a material's answer for the numbers `given`.
     fn answer<M: Bispectral<Real: Number>>(self, of: &M, given: &[f64], out: &mut [M::Real]) {
         let at = |number: usize| M::Real::from_double(given[number]);
         match self {
@@ -66,7 +67,8 @@ impl Question {
     }
 }
 
-/// Writes wavelength (nm), throughput, probability or density, and 1 where the wavelength was kept.
+/// Writes wavelength (nm), throughput, probability or density (1/nm), and 1 if the wavelength was
+/// kept, else 0; NaN and zeros for absorption.
 fn fill<T: Number>(out: &mut [T], sample: Option<Sample<T>>) {
     let [zero, one] = [0.0, 1.0].map(T::from_double);
     out.copy_from_slice(&match sample {
@@ -80,8 +82,8 @@ fn fill<T: Number>(out: &mut [T], sample: Option<Sample<T>>) {
     });
 }
 
-/// What each material answers to a question with numbers of its own: `given` is `[color][number]`,
-/// the result `[color][1]`, and `[color][4]` for draws.
+/// Each material's answer for its own numbers: `given` is `[color][number]`, the result `[color][1]`,
+/// and `[color][4]` for draws.
 #[pyfunction]
 pub(crate) fn answer<'py>(
     py: Python<'py>,
@@ -95,7 +97,7 @@ pub(crate) fn answer<'py>(
     let [taken, made] = question.counts();
     let given = given.as_slice()?;
     with_rows!(cube, of, rows => {
-        check_count("numbers", given.len(), taken * rows.len())?;
+        check_count("numbers", given.len(), taken * rows.count)?;
         answers(py, &rows, made, threads, |row, material, out| {
             question.answer(material, &given[row * taken..][..taken], out);
         })

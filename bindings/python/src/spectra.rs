@@ -5,19 +5,19 @@ use pyo3::prelude::*;
 use upglow::{Bispectral, Mixture};
 use upglow_color::{Grid, choices};
 
-use crate::arrays::triples;
+use crate::arrays::{Number, triples};
 use crate::cube::Cube;
 use crate::errors::value_error;
 use crate::nodes::nodes;
-use crate::rows::{Doubles, Rows, Stored, Subjects, answers, with_rows};
+use crate::rows::{Rows, Subjects, answers, doubles, stored, with_rows};
 use crate::word::Word;
 
-/// What a spectrum is of.
+/// The quantity of a spectrum.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Quantity {
-    /// What leaves at the wavelength it came at.
+    /// Light that leaves at the incident wavelength.
     Reflectance,
-    /// What leaves at any wavelength.
+    /// Light that leaves at any wavelength.
     Albedo,
 }
 
@@ -34,7 +34,7 @@ pub(crate) fn spectrum<'py>(
     threads: Option<usize>,
 ) -> PyResult<Bound<'py, PyAny>> {
     with_rows!(cube, of, rows => {
-        let nm = rows.numbers(&wavelengths_nm);
+        let nm: Vec<_> = wavelengths_nm.iter().map(|&nm| Number::from_double(nm)).collect();
         answers(py, &rows, nm.len(), threads, |_, material, out| match quantity.0 {
             Quantity::Reflectance => material.reflectances(&nm, out),
             Quantity::Albedo => {
@@ -57,21 +57,21 @@ pub(crate) fn reradiation_matrix<'py>(
     let [first_nm, last_nm, step_nm] = grid_nm;
     let grid = Grid::try_new(first_nm, last_nm, step_nm).map_err(value_error)?;
     match &of {
-        Subjects::Double(rgb) => matrices(py, &Doubles(&cube.cube, triples(rgb)?), grid, threads),
+        Subjects::Double(rgb) => matrices(py, &doubles(&cube.cube, triples(rgb)?), grid, threads),
         Subjects::Single(rgb) => {
             let rgb: Vec<_> = triples(rgb)?.iter().map(|v| v.map(f64::from)).collect();
-            matrices(py, &Doubles(&cube.cube, &rgb), grid, threads)
+            matrices(py, &doubles(&cube.cube, &rgb), grid, threads)
         }
         Subjects::Stored(reflectance, dye, fluorescence) => {
             let nodes = nodes(reflectance, dye, fluorescence)?;
-            matrices(py, &Stored(cube.cube.model(), nodes), grid, threads)
+            matrices(py, &stored(cube.cube.model(), nodes), grid, threads)
         }
     }
 }
 
 fn matrices<'py, 'r>(
     py: Python<'py>,
-    rows: &impl Rows<Material = Mixture<'r>>,
+    rows: &Rows<impl Fn(usize) -> Option<Mixture<'r>> + Sync>,
     grid: Grid,
     threads: Option<usize>,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {

@@ -1,4 +1,4 @@
-//! Where colors stand: what kind of material can show them at all.
+//! What kind of material can reproduce colors.
 
 use numpy::{PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -12,8 +12,9 @@ use crate::threads::on_threads;
 type Standings<'py> =
     (Bound<'py, PyArray1<u8>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
 
-/// Where each RGB stands under a contract: 0, reflectances show it; 1, it needs fluorescence; 2,
-/// nothing shows it. And how far it is from what it is beyond, in XYZ and in ΔE00.
+/// What kind of material can reproduce each RGB under a contract: 0, a reflectance; 1, only a
+/// fluorescent one; 2, none. And the distance in XYZ and in ΔE00 to the nearest color of any
+/// reflectance or, for 2, of any material.
 #[pyfunction]
 pub(crate) fn standing<'py>(
     py: Python<'py>,

@@ -1,4 +1,4 @@
-//! What a cube promises, recomputed.
+//! Verification of what a cube promises.
 
 use pyo3::prelude::*;
 use upglow::Interpolation;
@@ -10,7 +10,7 @@ use crate::threads::on_threads;
 use crate::watch::watched;
 use crate::word::Word;
 
-/// Name, about, verdict, value, limit, unit, checked, violations and the worst found.
+/// Name, about, verdict, value, limit, unit, checked, violations and the worst case.
 type Row = (
     &'static str,
     &'static str,

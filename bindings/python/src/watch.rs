@@ -1,4 +1,4 @@
-//! Long work: Python hears how far it is, and may stop it.
+//! Long work: reports progress to Python, which may stop it.
 
 use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -9,10 +9,10 @@ use std::time::Duration;
 use pyo3::prelude::*;
 use upglow_fit::{Progress, Watch};
 
-/// How often Python is told and asked. Shorter costs time; longer makes Ctrl-C feel dead.
+/// How often Python gets control. Shorter costs time; longer delays the response to Ctrl-C.
 const PAUSE: Duration = Duration::from_millis(50);
 
-/// What the thread that works and the one that called know of each other.
+/// State shared by the worker thread and the calling thread.
 #[derive(Debug, Default)]
 pub(crate) struct Watcher {
     latest: Mutex<Option<Progress>>,
@@ -23,7 +23,7 @@ pub(crate) struct Watcher {
 impl Watch for Watcher {
     fn progress(&self, progress: Progress) {
         let mut latest = self.latest.lock().unwrap_or_else(PoisonError::into_inner);
-        // Threads report out of order; a stage goes one way.
+        // Threads report out of order, but progress must not go back within a stage.
         let is_late = latest.is_some_and(|l| l.stage == progress.stage && l.done > progress.done);
         if !is_late {
             *latest = Some(progress);
@@ -36,7 +36,7 @@ impl Watch for Watcher {
 }
 
 impl Watcher {
-    /// Tells Python what is new, and lets it raise what it has to raise, such as Ctrl-C.
+    /// Reports new progress to Python, and raises what is pending there, such as Ctrl-C.
     fn consult(&self, py: Python<'_>, report: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
         py.check_signals()?;
         let latest = self.latest.lock().unwrap_or_else(PoisonError::into_inner).take();
@@ -47,8 +47,8 @@ impl Watcher {
     }
 }
 
-/// Does `work` on another thread, while this one, which is Python's, calls `report` with stage, units
-/// done and units in all. What `report` raises, and Ctrl-C, stops the work.
+/// Does `work` on another thread, while this one, which is Python's, calls `report` with stage,
+/// units done and total. An exception from `report`, and Ctrl-C, stop the work.
 pub(crate) fn watched<T: Send>(
     py: Python<'_>,
     report: Option<&Bound<'_, PyAny>>,

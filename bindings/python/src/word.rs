@@ -5,7 +5,7 @@ use upglow_color::Choice;
 
 use crate::errors::value_error;
 
-/// The value that a word names; for another word, a `ValueError` that lists those there are.
+/// The value that a word names; an unknown word is a `ValueError` that lists the known ones.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Word<C>(pub(crate) C);
 

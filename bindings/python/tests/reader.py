@@ -81,7 +81,7 @@ class Reader:
         return [(w, tuple(n)) for w, n in zip(weights, nodes, strict=True)]
 
     def bare(self, node: tuple[int, int, int], nm: np.ndarray) -> np.ndarray:
-        """The reflectance of a node without what is absorbed."""
+        """The reflectance of a node without absorption by dyes."""
         r, g, b = node
         edge, level, slope = self.arrays["reflectance"][b, g, r].astype(float)
         d, t = nm - edge, 1 + level**2
@@ -89,7 +89,7 @@ class Reader:
         return 0.5 + x / (2 * np.sqrt(1 + x * x))
 
     def absorbers(self, node: tuple[int, int, int]) -> list[Absorber]:
-        """What absorbs and emits in a node."""
+        """The absorbers and emitters of a node."""
         if self.model["kind"] == "reflectance":
             return []
         r, g, b = node

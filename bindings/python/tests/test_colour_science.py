@@ -31,11 +31,11 @@ TEN_DEGREES = colour.MSDS_CMFS["CIE 1964 10 Degree Standard Observer"]
 def integrated(
     sd: colour.SpectralDistribution,
     light: np.ndarray,
-    eye: colour.MultiSpectralDistributions = TWO_DEGREES,
+    functions: colour.MultiSpectralDistributions = TWO_DEGREES,
 ) -> np.ndarray:
-    """XYZ of a spectrum under a light, both over 1 nm; the eye begins at 360 nm."""
+    """XYZ of a spectrum under a light, both over 1 nm; the observer begins at 360 nm."""
     shape = colour.SpectralShape(360, 830, 1)
-    observer = eye.copy().align(shape)
+    observer = functions.copy().align(shape)
     illuminant = colour.SpectralDistribution(light, upglow.FINE_NM).align(shape)
     with warnings.catch_warnings():
         # It says that it aligns the light with the observer.
@@ -67,7 +67,7 @@ def test_its_observers_see_the_same_color(cube_10deg, rgb, name) -> None:
     expected = integrated(sd, light.power, TEN_DEGREES)
     found = cube_10deg.xyz(rgb, light=light, step_nm=1)
     assert np.abs(found - expected).max() < COLOR
-    # And it is another eye: the 2° observer sees something else, except black.
+    # The colors differ from those of the 2° observer, except black.
     assert np.abs(found - integrated(sd, light.power)).max() > 10 * COLOR
 
 

@@ -47,7 +47,7 @@ def test_what_is_no_light_is_refused() -> None:
     dark = np.where(upglow.FINE_NM < 350, 1.0, 0.0)
     with pytest.raises(ValueError, match="no power between 360 and 830 nm, expected some"):
         upglow.mitsuba.spectrum((upglow.FINE_NM, dark), by="power")
-    with pytest.raises(ValueError, match="by 'x', expected white or power"):
+    with pytest.raises(ValueError, match="by is 'x', expected white or power"):
         upglow.mitsuba.spectrum("D65", by="x")
     with pytest.raises(ValueError, match="D66"):
         upglow.mitsuba.spectrum("D66")

@@ -101,7 +101,7 @@ def test_a_closed_furnace_has_the_series_of_its_bounces(cube, name) -> None:
 
 
 def wrapped(cube: upglow.Cube, kind: str) -> tuple[dict, float]:
-    """A surface inside another, and what share of it shows before black."""
+    """A surface inside another, and its share of the result; the rest is black."""
     inner, black = surface(cube, MINT), {"type": "diffuse", "reflectance": 0.0}
     both = {"front": inner, "back": {**inner}}
     return {

@@ -12,12 +12,12 @@ STANDARD = upglow.Observer("cie-1931-2deg")
 
 
 def bells(nm: np.ndarray) -> np.ndarray:
-    """An eye that nobody has: one bell a channel, shape (n, 3)."""
+    """An artificial observer: one Gaussian per channel, shape (n, 3)."""
     return np.exp(-(((nm[:, None] - [600.0, 555.0, 450.0]) / 45.0) ** 2))
 
 
 @pytest.fixture(scope="module")
-def eye() -> upglow.Observer:
+def observer() -> upglow.Observer:
     nm = np.arange(380.0, 781.0, 5.0)
     return upglow.Observer((nm, bells(nm)), name="bells")
 
@@ -36,26 +36,26 @@ def test_an_observer_is_a_name_a_file_or_samples(tmp_path) -> None:
     assert upglow.Contract().observer.name == "CIE 1931 2°"
 
 
-def test_beyond_its_samples_an_observer_sees_nothing(eye) -> None:
+def test_functions_are_zero_beyond_the_samples(observer) -> None:
     beyond = (upglow.FINE_NM < 380) | (upglow.FINE_NM > 780)
-    assert (eye.matching[beyond] == 0).all() and (eye.matching[~beyond] > 0).any(axis=1).all()
+    assert (observer.matching[beyond] == 0).all() and (observer.matching[~beyond] > 0).any(axis=1).all()
 
 
-def test_white_is_what_the_observer_sees_of_the_light(eye) -> None:
-    contract = upglow.Contract(observer=eye, illuminant="A")
+def test_white_is_the_xyz_of_the_light_for_the_observer(observer) -> None:
+    contract = upglow.Contract(observer=observer, illuminant="A")
     light = upglow.Illuminant("A").power[::5]
-    expected = light @ eye.matching[::5]
+    expected = light @ observer.matching[::5]
     assert np.abs(contract.white_xyz - expected / expected[1]).max() < ROUNDING
     assert np.abs(contract.xyz_from_rgb @ np.ones(3) - contract.white_xyz).max() < ROUNDING
 
 
-def test_a_cube_matches_its_colors_for_its_observer_and_not_for_another(eye) -> None:
-    cube = upglow.build(upglow.Contract(observer=eye), resolution=4, model=upglow.Reflectance())
+def test_a_cube_matches_its_colors_for_its_observer_and_not_for_another(observer) -> None:
+    cube = upglow.build(upglow.Contract(observer=observer), resolution=4, model=upglow.Reflectance())
     rgb = np.array([0.5, 0.4, 0.3])
     spectrum = cube.reflectance(cube.fit(rgb), upglow.FIT_NM)
     light = upglow.Illuminant("D65").power[::5]
-    white = light @ eye.matching[::5]
-    seen = (spectrum * light) @ eye.matching[::5] / white[1]
+    white = light @ observer.matching[::5]
+    seen = (spectrum * light) @ observer.matching[::5] / white[1]
     # A color that the fit calls exact is within 0.01 CIEDE2000.
     exact = 2e-5
     assert np.abs(seen - cube.contract.xyz_from_rgb @ rgb).max() < exact
@@ -64,23 +64,23 @@ def test_a_cube_matches_its_colors_for_its_observer_and_not_for_another(eye) -> 
     assert cube.verify(points=200).holds
 
 
-def test_grays_are_flat_for_every_observer(eye) -> None:
-    cube = upglow.build(upglow.Contract(observer=eye), resolution=3)
+def test_grays_are_flat_for_every_observer(observer) -> None:
+    cube = upglow.build(upglow.Contract(observer=observer), resolution=3)
     gray = cube.reflectance([0.5, 0.5, 0.5], upglow.FIT_NM)
     assert np.abs(gray - 0.5).max() < 1e-6
 
 
-def test_the_file_holds_the_observer_and_says_so_by_its_version(eye, tmp_path) -> None:
-    contract = upglow.Contract(observer=eye)
+def test_the_file_holds_the_observer_and_says_so_by_its_version(observer, tmp_path) -> None:
+    contract = upglow.Contract(observer=observer)
     cube = upglow.build(contract, resolution=2, model=upglow.Reflectance())
     path = tmp_path / "cube"
     cube.write(path)
     again = upglow.Cube.read(path)
-    assert again.contract.observer == eye and again.to_bytes() == cube.to_bytes()
+    assert again.contract.observer == observer and again.to_bytes() == cube.to_bytes()
     assert again.header["format_version"] == 2
     from safetensors.numpy import load
 
-    assert np.array_equal(load(cube.to_bytes())["observer"], eye.matching.T)
+    assert np.array_equal(load(cube.to_bytes())["observer"], observer.matching.T)
     standard = upglow.build(resolution=2, model=upglow.Reflectance())
     assert standard.header["format_version"] == 1
     assert "observer" not in load(standard.to_bytes())

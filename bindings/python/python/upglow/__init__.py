@@ -15,10 +15,12 @@ Conventions, everywhere:
 - RGB is linear, in the contract's space, of shape ``(..., 3)``. Results keep the leading shape.
 - Wavelengths are nm. Densities over wavelength are per nm.
 - XYZ is relative: Y = 1 is the perfect diffuser under the contract's illuminant.
-- float32 RGB is answered in single precision where the library has it, all other types in double.
-- Every color is worked on alone: how many threads there are, and how an array is cut, changes no bit.
-- ``threads=None`` uses one thread for each core; Python's lock is released meanwhile.
-- Bad input is a ``ValueError`` that says what was found and what was expected.
+- Results for float32 RGB are single precision where the library supports it; for all other types,
+  double precision.
+- Each color is computed independently: no result depends on the number of threads or on how an
+  array is split.
+- ``threads=None`` uses one thread per core. Python's global lock is released during the work.
+- Invalid input raises a ``ValueError`` that says what was found and what was expected.
 
 The library's own documentation, the file format and the physics: see the repository's ``README.md``,
 ``docs/cube-format.md`` and ``docs/decisions``.

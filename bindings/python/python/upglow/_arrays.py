@@ -1,4 +1,4 @@
-"""Arrays of any leading shape, as the rows that the native half works on."""
+"""Conversion between arrays of any leading shape and the rows that the native half takes."""
 
 from __future__ import annotations
 
@@ -13,14 +13,17 @@ from ._materials import Materials
 Shape = tuple[int, ...]
 
 Threads = int | None
-"""A number of threads; one for each core by default."""
+"""A number of threads; one per core by default."""
 
 Of = ArrayLike | Materials
 """What is evaluated: linear RGB of shape (..., 3), or materials."""
 
+Nm = ArrayLike
+"""One wavelength or an array of them, nm."""
+
 
 def rgb_array(rgb: ArrayLike) -> NDArray[Any]:
-    """RGB of shape (..., 3) in float32, where it is that already, or float64."""
+    """RGB of shape (..., 3): float32 stays float32, all other types become float64."""
     array = np.asarray(rgb)
     if array.dtype.kind not in "fiu":
         raise TypeError(f"rgb has dtype {array.dtype}, expected numbers")
@@ -30,7 +33,7 @@ def rgb_array(rgb: ArrayLike) -> NDArray[Any]:
 
 
 def within(rgb: ArrayLike, outside: str) -> NDArray[Any]:
-    """RGB that was treated as ``outside`` says."""
+    """RGB after the treatment of values outside 0 to 1 that ``outside`` selects."""
     array = rgb_array(rgb)
     if outside == "raise":
         refuse_outside(array, to_fit=False)
@@ -44,7 +47,7 @@ def within(rgb: ArrayLike, outside: str) -> NDArray[Any]:
 
 
 def refuse_outside(array: NDArray[Any], *, to_fit: bool) -> None:
-    """Raises for the first RGB out of range, by index and value."""
+    """Raises a ValueError that names index and value of the first RGB out of range."""
     found = _upglow.first_outside(rows(array), to_fit)
     if found is not None:
         row, message = found
@@ -53,7 +56,7 @@ def refuse_outside(array: NDArray[Any], *, to_fit: bool) -> None:
 
 
 def rows(array: NDArray[Any]) -> NDArray[Any]:
-    """The array as rows of its last axis, without gaps."""
+    """The array as contiguous rows of its last axis."""
     return np.ascontiguousarray(array).reshape(-1, array.shape[-1])
 
 
@@ -63,7 +66,7 @@ def single_rows(array: NDArray[Any]) -> NDArray[np.float32]:
 
 
 def subjects(of: Of, outside: str) -> tuple[Any, Shape]:
-    """What is evaluated, as the native half takes it, and its leading shape."""
+    """What is evaluated, in the native half's form, and its leading shape."""
     if isinstance(of, Materials):
         return of._rows(), of.shape
     array = within(of, outside)
@@ -73,7 +76,7 @@ def subjects(of: Of, outside: str) -> tuple[Any, Shape]:
 def broadcast(
     of: Of, outside: str, *numbers: ArrayLike
 ) -> tuple[Any, NDArray[np.float64], Shape]:
-    """What is evaluated, and a row of numbers for each of it; and the leading shape of all."""
+    """What is evaluated, a row of numbers for each, and the leading shape of both."""
     subject = of if isinstance(of, Materials) else within(of, outside)
     lead = subject.shape if isinstance(subject, Materials) else subject.shape[:-1]
     arrays = [np.asarray(number, dtype=np.float64) for number in numbers]

@@ -1,4 +1,4 @@
-"""What RGB means."""
+"""Contracts: what RGB means."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ._observer import Observer
 
 
 class Contract:
-    """What must be agreed before RGB means a color.
+    """The definition of RGB: its space, light, observer and chromatic adaptation.
 
     Parameters
     ----------
@@ -24,18 +24,19 @@ class Contract:
     illuminant
         The light that materials are seen under: an `Illuminant`, or what one is made from.
     observer
-        The eye that sees them: an `Observer`, or what one is made from. XYZ, whites and color
-        differences are this observer's. A space's primaries are standardized for CIE 1931 2° only,
-        and what another eye sees of them is not known: its numbers are kept as they are, and with
-        ``bradford`` RGB (1, 1, 1) is the perfect diffuser for every observer.
+        An `Observer`, or what one is made from. XYZ, whites and color differences are computed for
+        it. RGB spaces are standardized for CIE 1931 2° only. For another observer their
+        chromaticities are used unchanged, and with ``bradford`` RGB (1, 1, 1) is still the perfect
+        diffuser.
     adaptation
         ``bradford``: RGB (1, 1, 1) is the perfect diffuser under the light. ``none``: the space's
-        own matrix; R = G = B is then not a flat spectrum unless the whites agree.
+        own matrix; R = G = B is then not a neutral gray unless the whites agree.
 
     Raises
     ------
     ValueError
-        If a name is unknown, the numbers make no space, or the observer does not see the light.
+        If a name is unknown, the numbers do not define a space, or the light has no luminance for
+        the observer.
 
     Examples
     --------
@@ -55,12 +56,12 @@ class Contract:
         observer: Any = "cie-1931-2deg",
         adaptation: str = "bradford",
     ) -> None:
-        chosen: str | list[float] = space if isinstance(space, str) else [float(v) for v in space]
-        if not isinstance(chosen, str) and len(chosen) != 8:
-            raise ValueError(f"space has {len(chosen)} numbers, expected a name or eight numbers")
-        light = Illuminant(illuminant)
-        eye = Observer(observer)
-        self._native = _upglow.Contract(chosen, light._native, eye._native, adaptation)
+        if not isinstance(space, str):
+            space = [float(v) for v in space]
+            if len(space) != 8:
+                raise ValueError(f"space has {len(space)} numbers, expected a name or eight numbers")
+        light, seen_by = Illuminant(illuminant)._native, Observer(observer)._native
+        self._native = _upglow.Contract(space, light, seen_by, adaptation)
 
     @classmethod
     def _of(cls, native: _upglow.Contract) -> Contract:
@@ -75,7 +76,7 @@ class Contract:
 
     @property
     def space(self) -> str:
-        """Name of the RGB space; ``custom`` for one of eight numbers."""
+        """Name of the RGB space; ``custom`` for one given by eight numbers."""
         return self._native.space
 
     @property
@@ -95,7 +96,7 @@ class Contract:
 
     @property
     def observer(self) -> Observer:
-        """The eye that sees materials."""
+        """The observer that sees materials."""
         return Observer(self._native.observer)
 
     @property

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import warnings
-from collections import OrderedDict
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -15,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _upglow
 from ._arrays import (
+    Nm,
     Of,
     Shape,
     Threads,
@@ -39,31 +39,31 @@ if TYPE_CHECKING:
     import colour
 
 _REMEMBERED_LIGHTS = 8
-"""Lights whose colors a cube keeps; each takes 16 bytes a node."""
+"""Lights whose colors a cube keeps; each takes 16 bytes per node."""
 
 
 class Samples(NamedTuple):
-    """Wavelengths drawn from materials; each array has the shape of what was asked."""
+    """Wavelengths drawn from materials; each array has the leading shape of the arguments."""
 
     nm: NDArray[Any]
-    """The wavelengths drawn, nm; not-a-number where nothing comes back."""
+    """The wavelengths drawn, nm; NaN where the light is absorbed."""
     throughput: NDArray[Any]
-    """Factor of the path's throughput: what the material carries divided by ``pdf``."""
+    """Factor for the path's throughput: the material's value divided by ``pdf``."""
     pdf: NDArray[Any]
-    """Elastic: the probability, 0 to 1, of keeping the wavelength. Else the density, 1/nm."""
+    """Probability, 0 to 1, of keeping the wavelength where it was kept; elsewhere density, 1/nm."""
     is_elastic: NDArray[np.bool_]
     """Whether the wavelength was kept."""
 
 
 class CubeCheck(NamedTuple):
-    """What a cube makes of colors, beside what physics allows; each array has shape (...)."""
+    """How well a cube reproduces colors, and how well any material could; arrays of shape (...)."""
 
     kind: NDArray[np.uint8]
-    """A `Kind` for each color: what it takes to show it."""
+    """A `Kind` for each color."""
     distance: NDArray[np.float64]
     """As in `Standing`."""
     nearest_de2000: NDArray[np.float64]
-    """CIEDE2000 to the nearest color within reach; 0 within reach."""
+    """CIEDE2000 to the nearest color that a material can reproduce, as in `Standing`."""
     de2000: NDArray[np.float32]
     """CIEDE2000 of the cube's material against the color, sums over 5 nm."""
 
@@ -83,7 +83,7 @@ class CubeSummary:
     mean_de2000: float
     """Mean CIEDE2000 over the nodes."""
     p95_de2000: float
-    """The smallest CIEDE2000 that at least 95 in 100 nodes do not exceed."""
+    """95th percentile of CIEDE2000 over the nodes."""
     max_de2000: float
     """Greatest CIEDE2000 of a node."""
     fluorescent: int
@@ -117,16 +117,16 @@ def build(
     metric
         Color difference to minimize: ``de2000``, ``de76`` or ``rgb``.
     method
-        ``search`` (ours), ``exhaustive`` (slower, its yardstick), ``konig2020`` or
+        ``search`` (ours), ``exhaustive`` (a slower reference for it), ``konig2020`` or
         ``konig2020-features``.
     sweeps
-        How often a node that missed its color tries its neighbors' materials; by default 2, and 4
-        for those of König et al. 2020.
+        How often a node that misses its color tries its neighbors' materials; by default 2, and 4
+        for the methods of König et al. 2020.
     threads
-        Threads; one for each core by default. The cube does not depend on it.
+        Number of threads; one per core by default. The cube does not depend on it.
     progress
-        ``True`` shows a bar: tqdm's, which knows notebooks, or plain text in a terminal. Or a
-        function that takes stage, units done and units in all.
+        ``True`` shows a progress bar: tqdm's, which supports notebooks, or plain text in a terminal.
+        Or a function that takes stage, units done and total.
 
     Raises
     ------
@@ -154,26 +154,25 @@ class Cube:
     """Materials for every node of a regular grid over linear RGB, 0 to 1 in each channel.
 
     Made by `upglow.build`, `Cube.read` or `Cube.from_bytes`. Between nodes, the materials of the
-    four nodes around a color are mixed: where they match their colors, so does every color between
-    them, and energy, bounds and slope limit hold everywhere.
+    four nodes around a color are mixed. If these match their colors, the mixture matches the color
+    between them, and it conserves energy and keeps the slope limit everywhere.
 
-    Wherever a method takes ``of``, it is linear RGB of shape (..., 3) in the cube's space, or
-    `Materials`, such as ``cube.nodes`` or what `material` and `fit` return. Other arguments broadcast
-    against the leading shape (...) by numpy's rules. RGB in float32 is answered in float32, all other
-    types in float64.
+    ``of``, the first argument of many methods, is linear RGB of shape (..., 3) in the cube's space,
+    or `Materials`, such as ``cube.nodes`` and the results of `material` and `fit`. Other arguments
+    broadcast against the leading shape (...) by numpy's rules. Results are float32 for float32 RGB,
+    and float64 for all other types.
 
-    ``outside`` says what happens to RGB that is not a number in 0 to 1: ``raise`` a ValueError that
-    names index and value, ``nan`` answers with not-a-number, ``clip`` takes the nearest color of the
-    cube (not-a-number stays what it is).
+    ``outside`` selects the treatment of RGB outside 0 to 1: ``raise`` raises a ValueError with index
+    and value, ``nan`` returns NaN, ``clip`` takes the nearest color of the cube (NaN stays NaN).
 
-    ``threads`` is a number of threads; by default one for each core. No answer depends on it.
+    ``threads`` is a number of threads, by default one per core. No result depends on it.
     """
 
     __slots__ = ("_colors", "_contract", "_native")
 
     _native: _upglow.Cube
     _contract: Contract
-    _colors: OrderedDict[tuple[Illuminant | None, str, int], _upglow.Colors]
+    _colors: dict[tuple[Illuminant | None, str, int], _upglow.Colors]
 
     def __init__(self) -> None:
         raise TypeError("a cube comes from upglow.build, Cube.read or Cube.from_bytes")
@@ -183,7 +182,7 @@ class Cube:
         cube = cls.__new__(cls)
         cube._native = native
         cube._contract = Contract._of(native.contract())
-        cube._colors = OrderedDict()
+        cube._colors = {}
         return cube
 
     # Files
@@ -192,21 +191,21 @@ class Cube:
     def read(cls, path: str | os.PathLike[str]) -> Cube:
         """Read a cube's file.
 
-        ``OSError`` if it cannot be read; ``ValueError`` if it is no cube, or was damaged.
+        ``OSError`` if it cannot be read; ``ValueError`` if it is not a cube, or is damaged.
         """
         return cls._of(_upglow.Cube.read(path))
 
     @classmethod
     def from_bytes(cls, content: bytes) -> Cube:
-        """Read a cube from the content of its file; ``ValueError`` if it is none."""
+        """Read a cube from the content of its file; ``ValueError`` if it is not one."""
         return cls._of(_upglow.Cube.from_bytes(content))
 
     def write(self, path: str | os.PathLike[str]) -> None:
-        """Write the cube's file. It appears whole or, on any failure, not at all (``OSError``)."""
+        """Write the cube's file, completely or, if that fails, not at all (``OSError``)."""
         self._native.write(path)
 
     def to_bytes(self) -> bytes:
-        """The content of the cube's file; the same cube gives the same bytes."""
+        """The content of the cube's file; the same for equal cubes."""
         return self._native.to_bytes()
 
     # What it is
@@ -223,7 +222,7 @@ class Cube:
 
     @property
     def header(self) -> dict[str, Any]:
-        """What the file says of itself: contract, model, fit. Fields: docs/cube-format.md."""
+        """The file's header: contract, model, fit. Its fields: docs/cube-format.md."""
         header: dict[str, Any] = json.loads(self._native.header_json())
         return header
 
@@ -249,7 +248,7 @@ class Cube:
 
     @property
     def dye_curves(self) -> NDArray[np.float64]:
-        """Absorption (0 to 1) and emission (unit area, 1/nm) of each dye as the model uses them.
+        """Absorption (0 to 1) and emission (unit area, 1/nm) of each dye, as the model uses them.
 
         ``[dye][absorption, emission][wavelength]`` over ``upglow.FINE_NM``; shape (dyes, 2, 531).
         """
@@ -280,8 +279,8 @@ class Cube:
     ) -> NDArray[np.float32]:
         """XYZ of the materials, in single precision.
 
-        The first call for a light prepares a table; from then on, tens of millions of colors a
-        second.
+        The first call for a light prepares a table. After that it computes tens of millions of
+        colors per second.
 
         Parameters
         ----------
@@ -290,11 +289,11 @@ class Cube:
         light
             An `Illuminant`, or what one is made from; the contract's by default.
         scale
-            ``white``: the perfect diffuser is Y = 1 under any light. ``power``: the light has as
-            much power from 300 to 830 nm as the contract's; an ultraviolet lamp leaves a white wall
-            nearly black, and fluorescence not.
+            ``white``: the perfect diffuser has Y = 1 under any light. ``power``: the light has the
+            power of the contract's from 300 to 830 nm; under an ultraviolet lamp, white is nearly
+            black and only fluorescence is bright.
         step_nm
-            Colors are sums over 5 nm, as in fits and in the stored differences, or over 1 nm.
+            Step of the sums: 5 nm, as in fits and in the stored differences, or 1 nm.
 
         Returns
         -------
@@ -316,8 +315,8 @@ class Cube:
     ) -> NDArray[np.float32]:
         """Linear RGB, in the contract's space, of the materials under another light.
 
-        As `xyz`, then to RGB: with ``scale="white"`` by an eye adapted to that light, where the
-        contract adapts; with ``scale="power"`` by one adapted to the contract's own light.
+        XYZ as in `xyz`, converted to RGB for an observer adapted to that light if the contract
+        adapts (``scale="white"``), or to the contract's own light (``scale="power"``).
 
         Returns
         -------
@@ -328,10 +327,10 @@ class Cube:
         return colors.rgb(single_rows(array), threads).reshape(array.shape)
 
     def check(self, rgb: ArrayLike, *, threads: Threads = None) -> CubeCheck:
-        """What it takes to show colors, and how far this cube's materials are from them.
+        """What kind of material can reproduce colors, and how far this cube's are from them.
 
         ``rgb`` is linear RGB of shape (..., 3); any finite numbers. Outside the cube ``de2000`` is
-        not-a-number.
+        NaN.
         """
         array = rgb_array(rgb)
         kind, distance, nearest_de2000 = standing(array, self._contract, threads=threads)
@@ -346,15 +345,14 @@ class Cube:
             native = None if illuminant is None else illuminant._native
             colors = _upglow.colors(self._native, native, scale, step_nm)
             while len(self._colors) >= _REMEMBERED_LIGHTS:
-                self._colors.popitem(last=False)
+                del self._colors[next(iter(self._colors))]
             self._colors[key] = colors
-            return colors
         return self._colors[key]
 
     # Spectra
 
     def reflectance(
-        self, of: Of, wavelengths_nm: ArrayLike, *, outside: str = "raise", threads: Threads = None
+        self, of: Of, wavelengths_nm: Nm, *, outside: str = "raise", threads: Threads = None
     ) -> NDArray[Any]:
         """Share of incident light that is reflected at the same wavelength, 0 to 1.
 
@@ -367,43 +365,32 @@ class Cube:
         return self._spectrum("reflectance", of, wavelengths_nm, outside, threads)
 
     def albedo(
-        self, of: Of, wavelengths_nm: ArrayLike, *, outside: str = "raise", threads: Threads = None
+        self, of: Of, wavelengths_nm: Nm, *, outside: str = "raise", threads: Threads = None
     ) -> NDArray[Any]:
-        """Share of light at each wavelength that comes back at any wavelength, 0 to 1.
+        """Share of incident light at each wavelength that leaves at any wavelength, 0 to 1.
 
         Shapes as in `reflectance`.
         """
         return self._spectrum("albedo", of, wavelengths_nm, outside, threads)
 
     def reradiation(
-        self,
-        of: Of,
-        in_nm: ArrayLike,
-        out_nm: ArrayLike,
-        *,
-        outside: str = "raise",
-        threads: Threads = None,
+        self, of: Of, in_nm: Nm, out_nm: Nm, *, outside: str = "raise", threads: Threads = None
     ) -> NDArray[Any]:
-        """Energy that leaves per nm at ``out_nm`` by fluorescence, per unit that came at ``in_nm``.
+        """Energy re-radiated per nm at ``out_nm``, per unit of energy incident at ``in_nm``; 1/nm.
 
-        1/nm. Reflection at the same wavelength is `reflectance`. ``in_nm`` and ``out_nm`` broadcast
+        Reflection at the same wavelength is `reflectance`. ``in_nm`` and ``out_nm`` broadcast
         against the leading shape of ``of``; the result has that shape.
         """
         return self._number("reradiation_per_nm", of, (in_nm, out_nm), outside, threads)
 
     def reradiation_matrix(
-        self,
-        of: Of,
-        wavelengths_nm: ArrayLike = FIT_NM,
-        *,
-        outside: str = "raise",
-        threads: Threads = None,
+        self, of: Of, wavelengths_nm: Nm = FIT_NM, *, outside: str = "raise", threads: Threads = None
     ) -> NDArray[np.float64]:
         """The re-radiation (Donaldson) matrix over the bands around n wavelengths.
 
-        Entry ``[..., out, in]`` is the share of the energy that comes in at wavelength ``in`` and
-        leaves within half a step of ``out``; reflectance is on the diagonal. Each column adds up to
-        at most 1. Wavelengths are whole nm in equal steps; by default 300, 305 … 830 nm.
+        Entry ``[..., out, in]`` is the share of the energy incident at wavelength ``in`` that leaves
+        within half a step of ``out``; reflectance is on the diagonal. Each column adds up to at most
+        1. Wavelengths are whole nm in equal steps; by default 300, 305 … 830 nm.
 
         Returns
         -------
@@ -424,12 +411,12 @@ class Cube:
         outside: str = "raise",
         threads: Threads = None,
     ) -> NDArray[np.float64]:
-        """Total radiance factor under a light: what leaves at each wavelength over what comes there.
+        """Total radiance factor under a light: light that leaves over light that is incident.
 
-        Reflectance and fluorescence together, as a spectrophotometer with that lamp sees them; above
-        1 where a material shines. Its color under the light is the material's. Not-a-number where
-        the light is dark. ``light`` is an `Illuminant`, or what one is made from; the contract's by
-        default. Wavelengths as in `reradiation_matrix`; light outside them excites nothing.
+        Reflectance and fluorescence together, as a spectrophotometer with that lamp measures them;
+        it may exceed 1. NaN where the light has no power. ``light`` is an `Illuminant`, or what one
+        is made from; the contract's by default. Wavelengths as in `reradiation_matrix`; excitation
+        outside them is ignored.
 
         Returns
         -------
@@ -441,9 +428,9 @@ class Cube:
         if first < 300 or last > 830:
             raise ValueError(f"wavelengths {first} to {last} nm, expected within 300 to 830 nm")
         power = illuminant.power[first - 300 : last - 299 : step]
-        back = matrix @ power
-        factor: NDArray[np.float64] = np.full(back.shape, np.nan)
-        return np.divide(back, power, out=factor, where=power > 0)
+        leaving = matrix @ power
+        factor: NDArray[np.float64] = np.full(leaving.shape, np.nan)
+        return np.divide(leaving, power, out=factor, where=power > 0)
 
     def spectral_distribution(
         self,
@@ -453,7 +440,7 @@ class Cube:
         light: Any = None,
         outside: str = "raise",
     ) -> colour.SpectralDistribution:
-        """The total radiance factor of one color, as colour-science's own type.
+        """The total radiance factor of one color, as a spectrum of colour-science.
 
         ``rgb`` is of shape (3,); the rest as in `radiance_factor`. ``ImportError`` without the
         package ``colour-science``.
@@ -473,45 +460,28 @@ class Cube:
     # Sampling
 
     def sample_incident(
-        self,
-        of: Of,
-        out_nm: ArrayLike,
-        u: ArrayLike,
-        *,
-        outside: str = "raise",
-        threads: Threads = None,
+        self, of: Of, out_nm: Nm, u: ArrayLike, *, outside: str = "raise", threads: Threads = None
     ) -> Samples:
         """Draw the wavelength of incident light, given that of the light that leaves.
 
-        The camera's way. ``u`` holds two independent numbers in 0 to 1, 1 excluded, on its last
-        axis: the first chooses between reflection and fluorescence, the second draws. ``out_nm`` and
-        ``u[..., 0]`` broadcast against the leading shape of ``of``.
+        For paths that start at the camera. ``u`` holds two independent numbers in 0 to 1, 1
+        excluded, on its last axis: the first chooses between reflection and fluorescence, the second
+        draws the wavelength. ``out_nm`` and ``u[..., 0]`` broadcast against the leading shape of
+        ``of``.
         """
         return self._sample("sample_incident", of, out_nm, u, outside, threads)
 
     def sample_outgoing(
-        self,
-        of: Of,
-        in_nm: ArrayLike,
-        u: ArrayLike,
-        *,
-        outside: str = "raise",
-        threads: Threads = None,
+        self, of: Of, in_nm: Nm, u: ArrayLike, *, outside: str = "raise", threads: Threads = None
     ) -> Samples:
         """Draw the wavelength of the light that leaves, given that of incident light.
 
-        The light's way; arguments as in `sample_incident`.
+        For paths that start at a light; arguments as in `sample_incident`.
         """
         return self._sample("sample_outgoing", of, in_nm, u, outside, threads)
 
     def incident_pdf_per_nm(
-        self,
-        of: Of,
-        in_nm: ArrayLike,
-        out_nm: ArrayLike,
-        *,
-        outside: str = "raise",
-        threads: Threads = None,
+        self, of: Of, in_nm: Nm, out_nm: Nm, *, outside: str = "raise", threads: Threads = None
     ) -> NDArray[Any]:
         """Density, 1/nm, with which `sample_incident` draws ``in_nm`` by fluorescence.
 
@@ -520,13 +490,7 @@ class Cube:
         return self._number("incident_pdf_per_nm", of, (in_nm, out_nm), outside, threads)
 
     def outgoing_pdf_per_nm(
-        self,
-        of: Of,
-        in_nm: ArrayLike,
-        out_nm: ArrayLike,
-        *,
-        outside: str = "raise",
-        threads: Threads = None,
+        self, of: Of, in_nm: Nm, out_nm: Nm, *, outside: str = "raise", threads: Threads = None
     ) -> NDArray[Any]:
         """Density, 1/nm, with which `sample_outgoing` draws ``out_nm`` by fluorescence.
 
@@ -535,19 +499,19 @@ class Cube:
         return self._number("outgoing_pdf_per_nm", of, (in_nm, out_nm), outside, threads)
 
     def incident_elastic_probability(
-        self, of: Of, out_nm: ArrayLike, *, outside: str = "raise", threads: Threads = None
+        self, of: Of, out_nm: Nm, *, outside: str = "raise", threads: Threads = None
     ) -> NDArray[Any]:
         """Probability, 0 to 1, that `sample_incident` keeps the wavelength."""
         return self._number("incident_elastic_probability", of, (out_nm,), outside, threads)
 
     def outgoing_elastic_probability(
-        self, of: Of, in_nm: ArrayLike, *, outside: str = "raise", threads: Threads = None
+        self, of: Of, in_nm: Nm, *, outside: str = "raise", threads: Threads = None
     ) -> NDArray[Any]:
         """Probability, 0 to 1, that `sample_outgoing` keeps the wavelength."""
         return self._number("outgoing_elastic_probability", of, (in_nm,), outside, threads)
 
     def _spectrum(
-        self, quantity: str, of: Of, wavelengths_nm: ArrayLike, outside: str, threads: Threads
+        self, quantity: str, of: Of, wavelengths_nm: Nm, outside: str, threads: Threads
     ) -> NDArray[Any]:
         native, shape = subjects(of, outside)
         nm = wavelength_list(wavelengths_nm)
@@ -556,13 +520,13 @@ class Cube:
         return _shaped(found, (*shape, *nm.shape))
 
     def _sample(
-        self, question: str, of: Of, known_nm: ArrayLike, u: ArrayLike, outside: str, threads: Threads
+        self, question: str, of: Of, known_nm: Nm, u: ArrayLike, outside: str, threads: Threads
     ) -> Samples:
         numbers = np.asarray(u, dtype=np.float64)
         if numbers.ndim == 0 or numbers.shape[-1] != 2:
             raise ValueError(f"u has shape {numbers.shape}, expected (..., 2)")
         if not np.all((numbers >= 0.0) & (numbers < 1.0)):
-            raise ValueError("u holds a number that is not in 0 to 1, 1 excluded")
+            raise ValueError("u has a number that is not in 0 to 1, 1 excluded")
         given = (known_nm, numbers[..., 0], numbers[..., 1])
         found, shape = self._answer(question, of, given, outside, threads)
         nm, throughput, pdf, is_elastic = (_shaped(column, shape) for column in found.T)
@@ -576,7 +540,7 @@ class Cube:
     def _answer(
         self, question: str, of: Of, given: Sequence[ArrayLike], outside: str, threads: Threads
     ) -> tuple[NDArray[Any], Shape]:
-        """What each material answers to numbers of its own, one row each, and their leading shape."""
+        """Each material's answer to its own numbers, one per row, and the leading shape."""
         native, numbers, shape = broadcast(of, outside, *given)
         return _upglow.answer(self._native, native, question, numbers, threads), shape
 
@@ -587,9 +551,10 @@ class Cube:
     ) -> Materials:
         """One material for each color, as a texture stores it, in single precision.
 
-        From the nodes around a color a few steps lead to a single material that shows it. Neighbors
-        end as neighbors; grays are flat; the cube's slope limit holds. Each call prepares a table
-        first, so give whole pictures. ``rgb`` has shape (..., 3), the result (...).
+        A few steps of optimization lead from the nodes around a color to a single material that
+        matches it. Similar colors get similar materials; grays are flat; the cube's slope limit
+        holds. Each call prepares a table first, so pass whole pictures. ``rgb`` has shape (..., 3),
+        the result (...).
         """
         array = within(rgb, outside)
         found = _upglow.polish(self._native, single_rows(array), threads)
@@ -600,8 +565,8 @@ class Cube:
     ) -> Materials:
         """Fit each color as the cube's nodes were fitted, instead of looking it up. Ctrl-C stops it.
 
-        ``rgb`` has shape (..., 3) and may be brighter than white: 0 to 10. About a millisecond a
-        color. The result has shape (...).
+        ``rgb`` has shape (..., 3) and may be brighter than white: 0 to 10. It takes about a
+        millisecond per color. The result has shape (...).
         """
         array = rgb_array(rgb).astype(np.float64, copy=False)
         refuse_outside(array, to_fit=True)
@@ -610,9 +575,9 @@ class Cube:
         return Materials._of(found, array.shape[:-1], self.model)
 
     def corners(self, rgb: ArrayLike, *, outside: str = "raise") -> Corners:
-        """The four nodes around each color and their weights.
+        """The four nodes around each color, and their weights.
 
-        ``cube.nodes[tuple(np.moveaxis(cube.corners(rgb).nodes, -1, 0))]`` are their materials.
+        Their materials are ``cube.nodes[tuple(np.moveaxis(cube.corners(rgb).nodes, -1, 0))]``.
         """
         array = within(rgb, outside).astype(np.float64, copy=False)
         number, weights = _upglow.corners(self._native, rows(array))
@@ -631,17 +596,17 @@ class Cube:
         threads: Threads = None,
         progress: bool | Report = False,
     ) -> VerifyReport:
-        """Recompute, at every nm, all that the cube promises, by code of its own. Ctrl-C stops it.
+        """Check at every nm all that the cube promises, with independent code. Ctrl-C stops it.
 
         Parameters
         ----------
         points
-            Random colors between the nodes; each takes 15 µs of a core.
+            Random colors between the nodes; each takes 15 µs of one core.
         interpolation
-            What stands between the nodes: ``blend``, ``none``, ``coefficients``, ``features`` or
+            How nodes are interpolated: ``blend``, ``none``, ``coefficients``, ``features`` or
             ``hybrid``.
         seed
-            Where the random colors start.
+            Seed of the random colors.
         progress
             As in `upglow.build`.
         """
@@ -654,6 +619,6 @@ class Cube:
 
 
 def _shaped(found: NDArray[Any], shape: Shape) -> NDArray[Any]:
-    """The numbers in their shape; a number where there is only one."""
+    """The numbers in this shape; a scalar for the shape ()."""
     shaped: NDArray[Any] = found.reshape(shape)[()]
     return shaped

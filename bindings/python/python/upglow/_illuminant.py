@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _upglow
-from ._named_table import NamedTable, native_table
+from ._named_table import NamedTable
 
 
 class Illuminant(NamedTable):
@@ -27,7 +25,7 @@ class Illuminant(NamedTable):
     Raises
     ------
     ValueError
-        If the name is unknown or the samples are no light.
+        If the name is unknown or the samples are not a valid light.
     OSError
         If the file cannot be read.
 
@@ -38,10 +36,10 @@ class Illuminant(NamedTable):
     (531,)
     """
 
-    __slots__ = ("_native",)
+    __slots__ = ()
 
-    def __init__(self, source: Any, *, name: str | None = None) -> None:
-        self._native = native_table(_upglow.Illuminant, source, name)
+    _native: _upglow.Illuminant
+    _kind, _values = _upglow.Illuminant, "power"
 
     @classmethod
     def line(cls, peak_nm: float, fwhm_nm: float, *, name: str | None = None) -> Illuminant:
@@ -51,21 +49,7 @@ class Illuminant(NamedTable):
         """
         return cls(_upglow.Illuminant.line(name or f"{peak_nm:g} nm line", peak_nm, fwhm_nm))
 
-    @staticmethod
-    def names() -> list[str]:
-        """The names of the built-in lights."""
-        return _upglow.Illuminant.names()
-
-    @property
-    def name(self) -> str:
-        """The name that files state."""
-        return self._native.name
-
     @property
     def power(self) -> NDArray[np.float64]:
         """Relative power at each wavelength of ``upglow.FINE_NM``; shape (531,)."""
         return self._native.power
-
-    @property
-    def _table(self) -> NDArray[np.float64]:
-        return self.power

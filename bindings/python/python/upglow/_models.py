@@ -1,15 +1,14 @@
-"""What fluoresces in a material, and by what rules."""
+"""Models: what fluoresces in a material, and by what rules."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from . import _upglow
-from ._names_and_files import is_path
+from ._named_table import is_path
 from ._wavelengths import samples
 
 
@@ -26,10 +25,10 @@ class Dye:
     emission
         Emission, relative, 0 or more, at the same wavelengths.
     quantum_yield
-        Share of the absorbed photons that come out, 0 to 1; ``None`` where nobody measured it.
+        Photons emitted per photon absorbed, 0 to 1; ``None`` if it was not measured.
 
-    Wavelengths ascend from 300 to 830 nm in steps of at most 5 nm. Not-a-number at either end of a
-    curve means that it was not measured there, and counts as zero.
+    Wavelengths ascend from 300 to 830 nm in steps of at most 5 nm. NaN at either end of a curve
+    means that it was not measured there, and counts as zero.
     """
 
     name: str
@@ -56,15 +55,15 @@ class Dyes:
         A built-in set (``konig8``, ``open8``, ``wide14``), a folder of CSV files with the header
         ``wavelength_nm,absorption,emission``, or a list of `Dye` in ring order.
     accounting
-        What is conserved when light is given back: ``energy`` or ``photon``.
+        What re-radiation conserves at a quantum yield of 1: ``energy`` or ``photon``.
     mixing
-        ``pooled``: what either dye absorbs comes out as the mixed emission. ``separate``: each dye
-        gives back what it absorbed itself.
+        ``pooled``: light absorbed by either dye is re-emitted with the mixed emission spectrum.
+        ``separate``: each dye re-emits what it absorbed itself.
     quantum_yield
-        Share of absorbed light that comes out, 0 to 1, or ``"measured"``.
+        Share of the absorbed light that is re-emitted, 0 to 1, or ``"measured"``.
     optical_density
-        Density A > 0 that the dyes are loaded to at their peak: the absorptance is then
-        1 - 10^(-A·a). ``None``: a itself, a thin solution.
+        Peak optical density A > 0 of the dyes at full concentration: the absorptance is then
+        1 - 10^(-A·a), a being the measured curve. ``None``: a thin solution, of absorptance a.
     """
 
     set: str | os.PathLike[str] | Sequence[Dye] = "konig8"
@@ -86,18 +85,13 @@ class Dyes:
         if not isinstance(self.set, (str, os.PathLike)):
             return _upglow.DyeSet.from_samples("custom", [dye._samples() for dye in self.set])
         word = os.fspath(self.set)
-        if word in _upglow.DyeSet.names() or not is_path(Path(word)):
+        if word in _upglow.DyeSet.names() or not is_path(word):
             return _upglow.DyeSet.named(word)
         return _upglow.DyeSet.from_folder(word)
 
     def _native(self) -> _upglow.Model:
-        return _upglow.Model.dyes(
-            self._native_set(),
-            self.accounting,
-            self.mixing,
-            self.quantum_yield,
-            self.optical_density,
-        )
+        rules = self.accounting, self.mixing, self.quantum_yield, self.optical_density
+        return _upglow.Model.dyes(self._native_set(), *rules)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,9 +103,9 @@ class Analytic:
     absorption_fwhm_nm, emission_fwhm_nm
         Full widths at half maximum, 15 to 80 nm.
     accounting
-        What is conserved when light is given back: ``energy`` or ``photon``.
+        What re-radiation conserves at a quantum yield of 1: ``energy`` or ``photon``.
     quantum_yield
-        Share of absorbed light that comes out, 0 to 1.
+        Share of the absorbed light that is re-emitted, 0 to 1.
     """
 
     absorption_fwhm_nm: float = 50.0

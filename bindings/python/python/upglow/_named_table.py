@@ -1,33 +1,69 @@
-"""Tables that have a name and a value for each nm: lights and observers."""
+"""Lights and observers: tables with a name and a value for each nm."""
 
 from __future__ import annotations
 
 import os
-from typing import Any, TypeVar
+from pathlib import Path
+from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from . import _upglow
-from ._names_and_files import named_or_read
 from ._wavelengths import samples
-
-Native = TypeVar("Native", _upglow.Illuminant, _upglow.Observer)
 
 
 class NamedTable:
-    """What is the same where its name and its table are."""
+    """What lights and observers have in common."""
 
-    __slots__ = ()
+    __slots__ = ("_native",)
+
+    _native: Any
+    _kind: ClassVar[Any]
+    """Class of the native half."""
+    _values: ClassVar[str]
+    """Name of the native half's array."""
+    _columns: ClassVar[int | None] = None
+    """Values per wavelength, where there is more than one."""
+
+    def __init__(self, source: Any, *, name: str | None = None) -> None:
+        self._native = self._native_of(source, name)
+
+    @classmethod
+    def _native_of(cls, source: Any, name: str | None) -> Any:
+        for native in (source, getattr(source, "_native", None)):
+            if isinstance(native, cls._kind):
+                return native
+        if isinstance(source, (str, os.PathLike)):
+            return cls._named_or_read(os.fspath(source), name)
+        nm, values = samples(cls.__name__.lower(), source, columns=cls._columns)
+        label = name or str(getattr(source, "name", "custom"))
+        return cls._kind.from_samples(label, np.ascontiguousarray(nm), np.ascontiguousarray(values))
+
+    @classmethod
+    def _named_or_read(cls, word: str, name: str | None) -> Any:
+        """A built-in table, or one from a file, called `name` or by the file's stem."""
+        try:
+            return cls._kind.named(word)
+        except ValueError:
+            if not is_path(word):
+                raise
+        path = Path(word)
+        text = path.read_text(encoding="utf-8")
+        try:
+            return cls._kind.from_csv(name or path.stem, text)
+        except ValueError as error:
+            raise ValueError(f"{path}: {error}") from None
+
+    @classmethod
+    def names(cls) -> list[str]:
+        """The built-in names."""
+        names: list[str] = cls._kind.names()
+        return names
 
     @property
     def name(self) -> str:
         """The name that files state."""
-        raise NotImplementedError
-
-    @property
-    def _table(self) -> NDArray[np.float64]:
-        raise NotImplementedError
+        name: str = self._native.name
+        return name
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.name!r})"
@@ -39,18 +75,10 @@ class NamedTable:
         return hash(self._key())
 
     def _key(self) -> tuple[str, bytes]:
-        return self.name, self._table.tobytes()
+        return self.name, getattr(self._native, self._values).tobytes()
 
 
-def native_table(
-    kind: type[Native], source: Any, name: str | None, *, columns: int | None = None
-) -> Native:
-    """The native half of a table, from what the classes of tables are made from."""
-    for native in (source, getattr(source, "_native", None)):
-        if isinstance(native, kind):
-            return native
-    if isinstance(source, (str, os.PathLike)):
-        return named_or_read(os.fspath(source), name, kind.named, kind.from_csv)
-    nm, values = samples(kind.__name__.lower(), source, columns=columns)
-    label = name or str(getattr(source, "name", "custom"))
-    return kind.from_samples(label, np.ascontiguousarray(nm), np.ascontiguousarray(values))
+def is_path(word: str) -> bool:
+    """Whether a word that is not a built-in name means a file or folder."""
+    path = Path(word)
+    return path.exists() or len(path.parts) > 1 or bool(path.suffix)

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _upglow
-from ._named_table import NamedTable, native_table
+from ._named_table import NamedTable
 
 
 class Observer(NamedTable):
-    """An eye: color-matching functions from 300 to 830 nm by 1 nm.
+    """An observer: color-matching functions from 300 to 830 nm by 1 nm.
 
     Parameters
     ----------
@@ -21,15 +19,15 @@ class Observer(NamedTable):
         ``wavelength_nm,x,y,z``, a pair ``(wavelengths_nm, matching)`` of arrays of shapes (n,) and
         (n, 3), or a ``colour.MultiSpectralDistributions`` of three, such as
         ``colour.MSDS_CMFS["CIE 1964 10 Degree Standard Observer"]``. Samples cover at least 400 to
-        700 nm in steps of at most 5 nm, and are 0 or more; beyond them, and where they are
-        not-a-number at either end, the observer sees nothing. Below 360 nm samples must be 0.
+        700 nm in steps of at most 5 nm, and are 0 or more; beyond them, and where samples at either
+        end are NaN, the functions are 0. Below 360 nm samples must be 0.
     name
         The name that files state; by default that of the source.
 
     Raises
     ------
     ValueError
-        If the name is unknown or the samples are no observer.
+        If the name is unknown or the samples are not a valid observer.
     OSError
         If the file cannot be read.
 
@@ -40,26 +38,12 @@ class Observer(NamedTable):
     (531, 3)
     """
 
-    __slots__ = ("_native",)
+    __slots__ = ()
 
-    def __init__(self, source: Any, *, name: str | None = None) -> None:
-        self._native = native_table(_upglow.Observer, source, name, columns=3)
-
-    @staticmethod
-    def names() -> list[str]:
-        """The names of the built-in observers."""
-        return _upglow.Observer.names()
-
-    @property
-    def name(self) -> str:
-        """The name that files state."""
-        return self._native.name
+    _native: _upglow.Observer
+    _kind, _values, _columns = _upglow.Observer, "matching", 3
 
     @property
     def matching(self) -> NDArray[np.float64]:
         """x, y and z at each wavelength of ``upglow.FINE_NM``; shape (531, 3)."""
         return self._native.matching
-
-    @property
-    def _table(self) -> NDArray[np.float64]:
-        return self.matching

@@ -9,12 +9,12 @@ from importlib import import_module
 from typing import Any
 
 Report = Callable[[str, int, int], Any]
-"""Takes the name of a stage, the units done and the units in all."""
+"""Takes the name of a stage, the units done and the total."""
 
 
 @contextmanager
 def reporting(progress: bool | Report) -> Iterator[Report | None]:
-    """What the native half reports to while the work is done."""
+    """The function to which the native half reports progress."""
     if callable(progress):
         yield progress
         return
@@ -27,7 +27,7 @@ def reporting(progress: bool | Report) -> Iterator[Report | None]:
 
 
 def _bar() -> _Tqdm | _Plain | None:
-    """A bar of tqdm, which knows notebooks; else plain text, where somebody sees it."""
+    """A bar of tqdm, which supports notebooks; without tqdm, plain text if stderr is a terminal."""
     try:
         return _Tqdm(import_module("tqdm.auto").tqdm)
     except ImportError:

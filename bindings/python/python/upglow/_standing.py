@@ -1,4 +1,4 @@
-"""What kind of material can show a color at all."""
+"""What kind of material can reproduce a color."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from ._contract import Contract
 
 
 class Kind(IntEnum):
-    """The least that it takes to show a color."""
+    """The simplest kind of material that can reproduce a color."""
 
     REFLECTANCE = 0
-    """Some reflectance shows it."""
+    """A material that only reflects."""
     NEEDS_FLUORESCENCE = 1
-    """No reflectance shows it, some fluorescent material does."""
+    """A fluorescent material, but no reflectance."""
     UNREACHABLE = 2
-    """No material shows it."""
+    """No material at all."""
 
 
 class Standing(NamedTuple):
-    """Where colors stand among those that materials can show."""
+    """What kind of material can reproduce colors, and their distance from those of reflectances."""
 
     kind: NDArray[np.uint8]
     """A `Kind` for each color; shape (...)."""
@@ -39,17 +39,17 @@ class Standing(NamedTuple):
 
 @cache
 def _default_contract() -> Contract:
-    """Kept, because a contract remembers where it found colors to stand."""
+    """Kept, because a contract caches the geometry that answers this question."""
     return Contract()
 
 
 def standing(
     rgb: ArrayLike, contract: Contract | None = None, *, threads: int | None = None
 ) -> Standing:
-    """Where colors stand: the limit of physics, not of a fit.
+    """What kind of material can reproduce each color: the limit of physics, not of a fit.
 
-    Some material that nobody can make may be the one that shows a color: these limits know no slope
-    limit and no dyes. They count photons.
+    The limit includes materials that nobody can make: it considers neither a slope limit nor real
+    dyes. Fluorescence re-emits at most one photon per photon absorbed.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What verification of a cube found."""
+"""Results of the verification of a cube."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Check:
-    """One law, or one figure."""
+    """One law of a cube that was checked, or one figure that was measured."""
 
     name: str
     """A short name that does not change."""
     about: str
     """What ``value`` is."""
     verdict: str
-    """``holds``, ``broken``, ``reported`` (no law, only a figure) or ``not applicable``."""
+    """``holds``, ``broken``, ``reported`` (a figure without a limit) or ``not applicable``."""
     value: float
     """The worst value found, or the figure reported."""
     limit: float | None
@@ -43,7 +43,7 @@ class VerifyReport:
     """Every law and every figure, in a fixed order."""
 
     def check(self, name: str) -> Check:
-        """The check of this name; ``KeyError`` if there is none."""
+        """The check of this name; ``KeyError`` for an unknown name."""
         for check in self.checks:
             if check.name == name:
                 return check

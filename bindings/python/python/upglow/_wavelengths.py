@@ -1,4 +1,4 @@
-"""The wavelengths of sums and tables."""
+"""Wavelengths of sums and tables, and sampled spectra."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from numpy.typing import ArrayLike, NDArray
 from . import _upglow
 
 FINE_NM: NDArray[np.float64] = _upglow.Illuminant.wavelengths_nm()
-"""300, 301 … 830 nm: every table is on these wavelengths."""
+"""300, 301 … 830 nm: the wavelengths of every table."""
 FINE_NM.flags.writeable = False
 
 FIT_NM: NDArray[np.float64] = FINE_NM[::5]
-"""300, 305 … 830 nm: fits and colors are sums over these wavelengths."""
+"""300, 305 … 830 nm: the wavelengths that fits and colors are summed over."""
 
 
 def wavelength_list(wavelengths_nm: ArrayLike) -> NDArray[np.float64]:
@@ -41,7 +41,7 @@ def grid(wavelengths_nm: ArrayLike) -> list[int]:
 def samples(
     what: str, curve: Any, *, columns: int | None = None
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Wavelengths (nm) and values of a pair of arrays or of colour-science's distributions.
+    """Wavelengths (nm) and values from a pair of arrays or one of colour-science's distributions.
 
     Values have shape (n,), or (n, columns).
     """

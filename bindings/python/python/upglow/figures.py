@@ -13,17 +13,17 @@ With matplotlib, figure 10a is ``plt.pcolormesh(f.red, f.green, f.kind[0])`` of
 function                figures of ``upglow-study figures``
 ======================  ====================================================================
 `chromaticity`          the diagram of 1e, 1f and 2a: spectral locus, primaries, white
-`node_colors`           1e, 1f: colors of all nodes; and their errors, for a histogram
+`node_colors`           1e, 1f: colors of all nodes, and their errors for a histogram
 `dyes`                  2: spectra of dyes, and the chromaticities of their emissions
 `layer`                 1, 3, 6, 7: a layer of nodes; 8, 9: colors between them, and errors
-`mixed_reflectances`    5: what lies between two reflectances
-`reachability`          10: what any material can show of a space
-`color_solid`           none: the surface of what any material can show, in XYZ and Lab
+`mixed_reflectances`    5: reflectances interpolated between two
+`reachability`          10: which colors of a space some material can reproduce
+`color_solid`           none: the surface of the solid of these colors, in XYZ and CIELAB
 ======================  ====================================================================
 
-Figure 4 is a sketch of three numbers and has no data. Every figure's colors are linear RGB of the
-cube's space: how to show them is the drawing's matter. ``threads`` is a number of threads, by default
-one for each core; no answer depends on it.
+Figure 4 is a sketch of three numbers and has no data. The colors are linear RGB in the cube's space;
+converting them for a display is up to the caller. ``threads`` is a number of threads, by default one
+per core; no result depends on it.
 """
 
 from __future__ import annotations
@@ -59,11 +59,11 @@ __all__ = [
 ]
 
 _MOST_POINTS = 2048
-"""Most points along an axis: more are a typing error, they would fill the memory."""
+"""Most points along an axis: more would fill the memory, and are a typing error."""
 
 
 class ChromaticityDiagram(NamedTuple):
-    """What a chromaticity diagram has before any color is in it."""
+    """The fixed parts of a chromaticity diagram: spectral locus, primaries and white."""
 
     locus_nm: NDArray[np.float64]
     """Wavelengths of the spectral locus, nm; shape (n,)."""
@@ -89,9 +89,9 @@ class NodeColors(NamedTuple):
     xyz: NDArray[np.float64]
     """XYZ of its material, sums over 5 nm; shape (n, n, n, 3)."""
     xy: NDArray[np.float64]
-    """Its chromaticity; not-a-number for black; shape (n, n, n, 2)."""
+    """Chromaticity of the same; NaN for black; shape (n, n, n, 2)."""
     de2000: NDArray[np.float32]
-    """CIEDE2000 between the two, as the cube stores it; shape (n, n, n)."""
+    """CIEDE2000 between `rgb` and `xyz`, as the cube stores it; shape (n, n, n)."""
 
     def bright_xy(self, least: float = 1.5) -> NDArray[np.float64]:
         """Chromaticities of the colors with X + Y + Z of at least ``least``; shape (k, 2).
@@ -103,7 +103,7 @@ class NodeColors(NamedTuple):
 
 
 def node_colors(cube: Cube, *, threads: int | None = None) -> NodeColors:
-    """The color of every node of a cube, beside the color that it stands for.
+    """The color of every node's material, and the color that it stands for.
 
     ``numpy.histogram(figures.node_colors(cube).de2000)`` is the distribution of its errors.
     """
@@ -127,11 +127,11 @@ class Layer(NamedTuple):
     axis: NDArray[np.float64]
     """Red of the columns and green of the rows, 0 to 1; shape (side,)."""
     rgb: NDArray[np.float64]
-    """Linear RGB that is shown, ``[green][red]``; any finite numbers; shape (side, side, 3)."""
+    """Linear RGB of the materials, ``[green][red]``; any finite numbers; shape (side, side, 3)."""
     de2000: NDArray[np.float64]
-    """CIEDE2000 from the color asked for, sums over 5 nm; shape (side, side)."""
+    """CIEDE2000 to the color that each material stands for, sums over 5 nm; shape (side, side)."""
     has_exact_nodes: NDArray[np.bool_]
-    """Whether all nodes that take part match their colors within 0.01; shape (side, side)."""
+    """Whether all nodes that are mixed match their colors within 0.01; shape (side, side)."""
 
 
 def layer(
@@ -142,19 +142,19 @@ def layer(
     interpolation: str = "blend",
     threads: int | None = None,
 ) -> Layer:
-    """What a cube shows at one blue, and how far that is from what was asked for.
+    """The colors of a cube's materials at one blue, and their errors.
 
     Parameters
     ----------
     cube
         The cube.
     blue
-        Blue, 0 to 1. Without ``side`` the layer of nodes nearest to it is taken.
+        Blue, 0 to 1. Without ``side``, the nearest layer of nodes is used.
     side
         Colors along red and along green, 2 to 2048; by default the nodes themselves.
     interpolation
-        What is done between nodes: ``blend`` (ours), or König et al.'s ``none``,
-        ``coefficients``, ``features`` and ``hybrid``. Nodes alone do not need any.
+        How nodes are interpolated: ``blend`` (ours), or ``none``, ``coefficients``, ``features`` and
+        ``hybrid`` of König et al. It has no effect without ``side``.
 
     Raises
     ------
@@ -186,22 +186,22 @@ class DyeSpectra(NamedTuple):
     emission: NDArray[np.float64]
     """Emission of unit area, 1/nm; shape (dyes, 531)."""
     absorption_peak_nm: NDArray[np.float64]
-    """Where each absorbs most, nm; shape (dyes,)."""
+    """Wavelength of the absorption's peak, nm; shape (dyes,)."""
     emission_peak_nm: NDArray[np.float64]
-    """Where each emits most, nm; shape (dyes,)."""
+    """Wavelength of the emission's peak, nm; shape (dyes,)."""
     emission_xy: NDArray[np.float64]
-    """Chromaticity of each emission, without reflected light; shape (dyes, 2)."""
+    """Chromaticity of the emission, without reflected light; shape (dyes, 2)."""
 
 
 def dyes(source: Dyes | Cube | None = None, *, observer: Any = None) -> DyeSpectra:
-    """Spectra of the dyes of a model or of a cube, and what color they glow in.
+    """Spectra of the dyes of a model or of a cube, and chromaticities of their emissions.
 
     Parameters
     ----------
     source
         `Dyes`, by default ``konig8``, or a `Cube` with dyes.
     observer
-        The eye: an `Observer`, or what one is made from; by default the cube's, or CIE 1931 2°.
+        An `Observer`, or what one is made from; by default the cube's, or CIE 1931 2°.
 
     Raises
     ------
@@ -212,13 +212,13 @@ def dyes(source: Dyes | Cube | None = None, *, observer: Any = None) -> DyeSpect
         native, own = source._native.model(), source.contract.observer
     else:
         native, own = (source or Dyes())._native(), Observer("cie-1931-2deg")
-    eye = own if observer is None else Observer(observer)
-    names, absorption, emission, peaks, xy = _upglow.dye_spectra(native, eye._native)
+    seen_by = own if observer is None else Observer(observer)
+    names, absorption, emission, peaks, xy = _upglow.dye_spectra(native, seen_by._native)
     return DyeSpectra(names, FINE_NM, absorption, emission, peaks[:, 0], peaks[:, 1], xy)
 
 
 class Reachability(NamedTuple):
-    """What it takes to show the colors of layers of a space."""
+    """What kind of material can reproduce the colors of layers of a space."""
 
     blue: NDArray[np.float64]
     """Blue of each layer, 0 to 1; shape (layers,)."""
@@ -228,7 +228,7 @@ class Reachability(NamedTuple):
     """An `upglow.Kind` for each color, ``[layer][green][red]``; shape (layers, side, side)."""
 
     def shares(self) -> NDArray[np.float64]:
-        """Shares of reflectance, fluorescence and nothing in each layer; shape (layers, 3)."""
+        """Share of each `upglow.Kind` in each layer; shape (layers, 3)."""
         return np.stack([(self.kind == kind).mean(axis=(1, 2)) for kind in range(3)], axis=-1)
 
 
@@ -239,9 +239,9 @@ def reachability(
     side: int = 32,
     threads: int | None = None,
 ) -> Reachability:
-    """What any material can show of a space: the limit of physics, not of a fit.
+    """Which colors of a space some material can reproduce: the limit of physics, not of a fit.
 
-    The kinds of `upglow.standing`, which know no slope limit and no dyes, and count photons.
+    For each color the kind that `upglow.standing` finds, in layers of constant blue.
 
     Parameters
     ----------
@@ -266,7 +266,7 @@ def reachability(
 
 
 class ColorSolid(NamedTuple):
-    """The surface of what materials can show: rows from pole to pole, columns around, closed."""
+    """The surface of a color solid: rows from pole to pole, columns around; closed."""
 
     xyz: NDArray[np.float64]
     """XYZ; Y = 1 is the perfect diffuser; shape (steps + 1, 2·steps + 1, 3)."""
@@ -281,9 +281,9 @@ def color_solid(
     steps: int = 32,
     threads: int | None = None,
 ) -> ColorSolid:
-    """The surface of the solid of all colors that any material can show under the contract's light.
+    """The surface of the solid of all colors that materials can have under the contract's light.
 
-    Each point is the color furthest in one direction of XYZ. For a picture,
+    Each point is the color furthest in one direction of XYZ. To plot it:
     ``axes.plot_surface(*numpy.moveaxis(solid.xyz, -1, 0))``.
 
     Parameters
@@ -291,8 +291,8 @@ def color_solid(
     contract
         Light and observer; D65 and CIE 1931 2° by default.
     materials
-        ``reflectance``: MacAdam's solid. ``fluorescence``: each photon comes out as at most one, at
-        no shorter wavelength.
+        ``reflectance``: MacAdam's solid. ``fluorescence``: at most one photon is re-emitted per
+        photon absorbed, at no shorter wavelength.
     steps
         Steps from pole to pole, 2 to 2048; twice as many around.
     """
@@ -309,7 +309,7 @@ def mixed_reflectances(
     mixing: str = "spectra",
     shares: ArrayLike = (0.0, 0.25, 0.5, 0.75, 1.0),
 ) -> NDArray[np.float64]:
-    """What lies between two reflectances, over ``upglow.FINE_NM``.
+    """Reflectances interpolated between two, over ``upglow.FINE_NM``.
 
     Parameters
     ----------
@@ -317,8 +317,8 @@ def mixed_reflectances(
         Shift (nm), width (nm, > 0) and slope (1/nm, not 0) of each; figure 5 has
         (450, 45, -0.009) and (620, 60, -0.008).
     mixing
-        What is mixed: ``coefficients`` of the polynomial, ``spectra``, or ``features`` (shift, width
-        and slope).
+        What is interpolated: ``coefficients`` of the polynomial, ``spectra``, or ``features`` (shift,
+        width and slope).
     shares
         Shares of the second, 0 to 1; shape (n,).
 

@@ -5,13 +5,13 @@ between wavelengths.
     mi.set_variant("llvm_ad_spectral")
     import upglow.mitsuba
 
-Importing it, before or after `set_variant`, registers two plugins:
+The import registers two plugins, whether it comes before or after `set_variant`:
 
-- the BSDF ``upglow`` with the parameters ``cube``, a path, and ``color``: three numbers linear in the
-  cube's RGB, or a texture of such;
-- the integrator ``upglow_path``, the renderer's ``path`` plus fluorescence.
+- the BSDF ``upglow`` with the parameters ``cube``, a path, and ``color``: three numbers, linear in
+  the cube's RGB space, or a texture of them;
+- the integrator ``upglow_path``: Mitsuba's ``path`` plus fluorescence.
 
-All of it, with what the renderer makes impossible: docs/mitsuba.md.
+Documentation and limits: docs/mitsuba.md.
 """
 
 from ._cube_source import in_memory

@@ -1,4 +1,4 @@
-"""The BSDF `upglow`: a diffuse surface of a cube's material."""
+"""The BSDF `upglow`: a diffuse surface with a cube's material."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from ._wrappers import Fluorescence
 
 
 def bsdf_class() -> Any:
-    """The class for the variant that is set: its base is another in each."""
+    """The class for the current variant: each variant has its own base class."""
 
     class UpglowBSDF(mi.BSDF):  # type: ignore[misc]
         """A diffuse reflector whose reflectance is looked up in a cube.
 
-        The renderer's interface for surfaces knows one wavelength on both sides of a reflection.
-        Here that part is answered; `fluorescence` has the rest for integrators that ask.
+        Mitsuba's BSDF interface has the same wavelength on both sides of a reflection, so its
+        methods return the reflected part only. `fluorescence` has the rest, for `upglow_path`.
         """
 
         def __init__(self, props: Any) -> None:
@@ -29,7 +29,7 @@ def bsdf_class() -> Any:
             self._cube = on_device(cube_named(self._source))
             self._color = Color(props)
             flags = mi.BSDFFlags.DiffuseReflection | mi.BSDFFlags.FrontSide
-            if self._color.texture is not None:
+            if self._color.is_textured:
                 flags = flags | mi.BSDFFlags.SpatiallyVarying
             self.m_components, self.m_flags = [flags], flags
 
@@ -39,12 +39,12 @@ def bsdf_class() -> Any:
             return self._cube.is_fluorescent
 
         def fluorescence(self, lamps: Lamps | None) -> Fluorescence:
-            """Draws of fluorescence for this surface in a scene with such lamps.
+            """A function that draws fluorescence of this surface in a scene with these lamps.
 
-            The function takes a surface interaction, two numbers in 0 to 1, and a mask. It returns
-            throughputs and wavelengths (nm) of light that comes in, for those of the interaction,
-            which leave. A throughput is that of the whole hemisphere, as a reflectance is; 0 at the
-            back.
+            It takes a surface interaction, two random numbers in 0 to 1, and a mask. For the
+            wavelengths of the interaction, which leave, it returns throughputs and the wavelengths
+            (nm) of incident light. A throughput is that of the whole hemisphere, as a reflectance
+            is; 0 on the back.
             """
             draw = self._cube.fluorescence(lamps)
 
@@ -61,7 +61,7 @@ def bsdf_class() -> Any:
         ) -> tuple[Any, Any]:
             cos_i = mi.Frame3f.cos_theta(si.wi)
             drawn = dr.zeros(mi.BSDFSample3f)
-            active = active & (cos_i > 0) & self._is_asked(ctx)
+            active = active & (cos_i > 0) & self._is_enabled(ctx)
             drawn.wo = mi.warp.square_to_cosine_hemisphere(sample2)
             drawn.pdf = dr.select(active, mi.warp.square_to_cosine_hemisphere_pdf(drawn.wo), 0)
             drawn.eta = 1
@@ -71,12 +71,12 @@ def bsdf_class() -> Any:
             return drawn, dr.select(active & (drawn.pdf > 0), weight, 0)
 
         def eval(self, ctx: Any, si: Any, wo: Any, active: Any = True) -> Any:
-            active = active & self._is_asked(ctx) & _are_in_front(si, wo)
+            active = active & self._is_enabled(ctx) & _are_in_front(si, wo)
             value = self._reflectance(si, active) * (mi.Frame3f.cos_theta(wo) / dr.pi)
             return dr.select(active, value, 0)
 
         def pdf(self, ctx: Any, si: Any, wo: Any, active: Any = True) -> Any:
-            active = active & self._is_asked(ctx) & _are_in_front(si, wo)
+            active = active & self._is_enabled(ctx) & _are_in_front(si, wo)
             return dr.select(active, mi.warp.square_to_cosine_hemisphere_pdf(wo), 0)
 
         def eval_pdf(self, ctx: Any, si: Any, wo: Any, active: Any = True) -> tuple[Any, Any]:
@@ -95,7 +95,7 @@ def bsdf_class() -> Any:
         def _reflectance(self, si: Any, active: Any) -> Any:
             return self._cube.reflectance(self._color.at(si, active), si.wavelengths, active)
 
-        def _is_asked(self, ctx: Any) -> bool:
+        def _is_enabled(self, ctx: Any) -> bool:
             return bool(ctx.is_enabled(mi.BSDFFlags.DiffuseReflection))
 
     return UpglowBSDF

@@ -1,4 +1,4 @@
-"""The parts of the renderer's objects."""
+"""The parts of Mitsuba's objects."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from ._host import mi
 
 
 def children(parent: Any) -> list[tuple[str, Any]]:
-    """The parts that an object of the renderer shows, by name.
+    """The parts that an object of Mitsuba exposes, by name.
 
-    They are not to be kept longer than what they are parts of: a light alone, when its shape is gone,
-    ends the next rendering with a crash.
+    Do not keep them longer than the object itself: a light that outlives its shape crashes the next
+    rendering.
     """
     parts = _collector(mi.variant())()
     parent.traverse(parts)
@@ -22,7 +22,7 @@ def children(parent: Any) -> list[tuple[str, Any]]:
 
 @cache
 def _collector(_variant: str) -> Any:
-    """One class for each variant: a class is freed late, and with it all that it refers to."""
+    """One class per variant. A class per call would be freed late, and with it what it refers to."""
 
     class Parts(mi.TraversalCallback):  # type: ignore[misc]
         def __init__(self) -> None:

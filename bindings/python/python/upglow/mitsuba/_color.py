@@ -1,4 +1,4 @@
-"""The parameter `color`: three numbers, or a texture of such."""
+"""The parameter `color`: three numbers, or a texture of them."""
 
 from __future__ import annotations
 
@@ -17,34 +17,33 @@ class Color:
     """A color in the cube's RGB space, where a ray meets a surface."""
 
     def __init__(self, props: Any) -> None:
-        self.constant, self.texture = None, None
+        self.is_textured = False
         if "color" not in props:
             raise ValueError(f"no color, {_EXPECTED}")
         kind = str(props.type("color")).split(".")[-1]
         if kind == "Vector":
-            self.constant = _constant(list(props["color"]))
+            self._value = _constant(list(props["color"]))
         elif kind == "Object" and isinstance(props["color"], mi.Texture):
-            self.texture = _texture(props["color"])
+            self._value, self.is_textured = _texture(props["color"]), True
         elif kind in ("Color", "Spectrum"):
             raise ValueError(
                 f"color is {'an rgb value' if kind == 'Color' else 'a spectrum'}, "
-                f"which the renderer takes for its own, {_EXPECTED}"
+                f"which the renderer has already upsampled, {_EXPECTED}"
             )
         else:
             raise ValueError(f"color is of type {kind}, {_EXPECTED}")
 
     def at(self, si: Any, active: Any) -> Any:
-        """Linear RGB, 0 to 1; filtered by the texture before anything is looked up."""
-        found = self.constant if self.texture is None else self.texture.eval_3(si, active)
+        """Linear RGB, 0 to 1; a texture is filtered before the look-up."""
+        found = self._value.eval_3(si, active) if self.is_textured else self._value
         return dr.clip(mi.Color3f(found), 0, 1)
 
     def traverse(self, callback: Any) -> None:
-        """Shows the color to who edits scenes."""
-        found = self.constant if self.texture is None else self.texture
-        callback.put("color", found, mi.ParamFlags.Differentiable)
+        """Exposes the color to `mitsuba.traverse`."""
+        callback.put("color", self._value, mi.ParamFlags.Differentiable)
 
     def __str__(self) -> str:
-        return str(self.constant if self.texture is None else self.texture)
+        return str(self._value)
 
 
 def _constant(rgb: list[float]) -> Any:
@@ -53,7 +52,7 @@ def _constant(rgb: list[float]) -> Any:
         raise ValueError(f"color is {told}, expected 0 to 1 in each channel")
     color = mi.Color3f(*rgb)
     if not is_scalar():
-        # An input of compiled code, and not a part of it: another color compiles nothing.
+        # As an input of the compiled code, not a literal in it: another color needs no compilation.
         dr.make_opaque(color)
     return color
 
@@ -64,7 +63,7 @@ def _texture(texture: Any) -> Any:
             texture.eval_3(dr.zeros(mi.SurfaceInteraction3f))
         except RuntimeError:
             raise ValueError(
-                "color is a bitmap of another sort, expected three channels and raw=true: "
-                "without it the renderer has made spectra of its own"
+                "color is a bitmap of spectra or without three channels, "
+                "expected three channels and raw=true"
             ) from None
     return texture

@@ -1,4 +1,4 @@
-"""The parameter `cube`: the path of a cube's file, or a cube in memory by a name."""
+"""The parameter `cube`: the path of a cube's file, or the name of a cube in memory."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from ._jit_cube import JitCube
 from ._scalar_cube import ScalarCube
 
 _IN_MEMORY = "upglow cube "
-"""How the names of cubes in memory begin."""
+"""Prefix of the names of cubes in memory."""
 
 _REMEMBERED_FILES = 8
-"""Files whose cubes are kept for scenes that name them again."""
+"""Files whose cubes are kept for further scenes."""
 
 DeviceCube = JitCube | ScalarCube
 
@@ -27,9 +27,8 @@ _on_device: dict[tuple[str, int], tuple[Cube, DeviceCube]] = {}
 def in_memory(cube: Cube) -> str:
     """A name for a cube in memory, for the parameter `cube` of a scene.
 
-    The renderer's scenes hold numbers, texts and its own objects, and a cube is none of these. The
-    cube lives as long as the program, as do its arrays on the device. The same cube has the same
-    name.
+    Parameters of Mitsuba's plugins are numbers, strings or its own objects. The cube is kept until
+    the program ends. The same cube always gets the same name.
 
     Examples
     --------
@@ -52,7 +51,8 @@ def cube_named(source: Any) -> Cube:
         raise ValueError(f"cube is of type {type(source).__name__}, expected a path")
     if source in _in_memory:
         return _in_memory[source]
-    path = _resolved(source)
+    # A relative path is searched for where the scene's other files are.
+    path = Path(str(mi.file_resolver().resolve(source)))
     try:
         state = os.stat(path)
         key = (str(path), state.st_mtime_ns, state.st_size)
@@ -68,15 +68,10 @@ def cube_named(source: Any) -> Cube:
 
 
 def on_device(cube: Cube) -> DeviceCube:
-    """The cube's arrays where the variant that is set computes; made once."""
+    """The cube's arrays on the device of the current variant; made once."""
     key = (str(mi.variant()), id(cube))
     if key not in _on_device:
         while len(_on_device) >= _REMEMBERED_FILES:
             del _on_device[next(iter(_on_device))]
         _on_device[key] = cube, ScalarCube(cube) if is_scalar() else JitCube(cube)
     return _on_device[key][1]
-
-
-def _resolved(source: str) -> Path:
-    """Relative paths are looked for where the scene's other files are."""
-    return Path(str(mi.file_resolver().resolve(source)))

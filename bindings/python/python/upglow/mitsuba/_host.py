@@ -1,6 +1,6 @@
 """The renderer: `mi` and `dr` are the packages mitsuba and drjit.
 
-They are untyped here: what they hold depends on the variant that is set.
+They are untyped here, because their content depends on the current variant.
 """
 
 from __future__ import annotations
@@ -18,19 +18,19 @@ except ImportError as error:
 
 
 def is_scalar() -> bool:
-    """Whether the variant works on one ray at a time."""
+    """Whether the current variant works on one ray at a time."""
     return str(mi.variant()).startswith("scalar")
 
 
 def what_is_missing() -> str | None:
-    """Why the variant that is set cannot show spectral materials, if it cannot."""
+    """Why the current variant cannot render spectral materials; None if it can."""
     if not mi.is_spectral:
-        lack = "has no wavelengths"
+        problem = "has no wavelengths"
     elif mi.is_polarized:
-        lack = "tracks polarization, which fluorescence here does not"
+        problem = "tracks polarization, which upglow does not support"
     else:
         return None
-    return f"variant {mi.variant()} {lack}, expected llvm_ad_spectral or another *_spectral"
+    return f"variant {mi.variant()} {problem}, expected llvm_ad_spectral or another *_spectral"
 
 
 def spectrum_of(values: Any) -> Any:
@@ -39,6 +39,6 @@ def spectrum_of(values: Any) -> Any:
 
 
 def ratio(part: Any, whole: Any) -> Any:
-    """A quotient, 0 where the whole is not positive: a scalar variant must not even try."""
+    """The quotient, 0 where `whole` is not positive; never divides by 0, as scalars would raise."""
     is_some = whole > 0
     return dr.select(is_some, part / dr.select(is_some, whole, 1), 0)

@@ -1,7 +1,7 @@
 """The integrator `upglow_path`: path tracing in which wavelengths may change.
 
-A path from the camera carries four wavelengths, as the renderer's own do. Where it meets a fluorescent
-surface, each of them goes on as it was, or as a shorter one whose light the surface turns into it.
+A path from the camera carries four wavelengths, as Mitsuba's own paths do. At a fluorescent surface
+each of them is kept, or replaced by a shorter one from which the surface re-radiates to it.
 """
 
 from __future__ import annotations
@@ -14,23 +14,17 @@ from ._lamps import Lamps
 from ._wrappers import Fluorescence, fluorescent_surfaces, no_fluorescence
 
 _ENDLESS = 2**31 - 1
-"""The depth of paths that only chance ends."""
+"""The depth of paths that only Russian roulette ends."""
 
 _MOST_LIKELY = 0.95
-"""Russian roulette ends at least one path in twenty, as in the renderer's own integrators."""
+"""Russian roulette ends at least one path in twenty, as in Mitsuba's own integrators."""
 
-
-@dataclass(frozen=True)
-class _Known:
-    """What paths are told of a scene."""
-
-    lamps: Lamps
-    surfaces: list[tuple[Any, Fluorescence]]
-    """Those that fluoresce, each with its draws."""
+_Facts = tuple[Lamps, list[tuple[Any, Fluorescence]]]
+"""The lamps of a scene, and its fluorescent BSDFs, each with the function that draws."""
 
 
 def integrator_class() -> Any:
-    """The class for the variant that is set: its base is another in each."""
+    """The class for the current variant: each variant has its own base class."""
 
     class UpglowPath(mi.SamplingIntegrator):  # type: ignore[misc]
         """Unidirectional path tracing with emitter sampling, for fluorescent surfaces."""
@@ -40,7 +34,7 @@ def integrator_class() -> Any:
             self._max_depth = _depth(props, "max_depth", -1, 0)
             self._rr_depth = _depth(props, "rr_depth", 5, 1)
             self._hides = props.get("hide_emitters", False)
-            self._seen: tuple[Any, _Known] | None = None
+            self._seen: tuple[Any, _Facts] | None = None
 
         def sample(
             self, scene: Any, sampler: Any, ray: Any, medium: Any = None, active: Any = True
@@ -62,25 +56,25 @@ def integrator_class() -> Any:
                 f"  hide_emitters = {self._hides}\n]"
             )
 
-        def _known(self, scene: Any) -> _Known:
-            """The fluorescent surfaces of a scene.
+        def _facts(self, scene: Any) -> _Facts:
+            """The lamps and fluorescent BSDFs of a scene.
 
-            The scene itself is not kept: it holds the integrator, and both would stay for ever.
+            Scalar variants need them for every ray, so they are kept. The scene is not: it refers to
+            the integrator, and neither would ever be freed.
             """
             if not is_scalar():
-                return _known(scene)
-            # Here each ray asks.
+                return _facts(scene)
             parts = scene.shapes(), scene.emitters()
             if self._seen is None or self._seen[0] != parts:
-                self._seen = parts, _known(scene)
+                self._seen = parts, _facts(scene)
             return self._seen[1]
 
     return UpglowPath
 
 
-def _known(scene: Any) -> _Known:
+def _facts(scene: Any) -> _Facts:
     lamps = Lamps(scene)
-    return _Known(lamps, fluorescent_surfaces(scene, lamps))
+    return lamps, fluorescent_surfaces(scene, lamps)
 
 
 def _depth(props: Any, name: str, default: int, least: int) -> int:
@@ -109,37 +103,37 @@ def _loop(walk: _Walk, state: _State, max_depth: int) -> _State:
 
 @dataclass
 class _State:
-    """A path on its way."""
+    """The state of a path."""
 
     ray: Any
-    """Where it goes next, with its wavelengths there."""
+    """The next ray, with its wavelengths."""
     radiance: Any
-    """What was gathered, for each wavelength of the camera."""
+    """Radiance so far, for each wavelength of the camera."""
     throughput: Any
-    """What light from ahead is worth."""
+    """Factor for radiance from the next ray."""
     eta: Any
-    """Product of the indices of refraction passed."""
+    """Product of the relative indices of refraction so far."""
     depth: Any
-    """Surfaces met."""
+    """Number of surfaces so far."""
     si: Any
-    """The last of them."""
+    """Interaction with the last surface."""
     pdf: Any
-    """Density (1/sr) of the direction drawn there."""
+    """Density (1/sr) of the ray's direction there."""
     is_delta: Any
-    """Whether that direction had no density."""
+    """Whether that direction came from a Dirac delta."""
     is_valid: Any
     """Whether the camera sees anything."""
     active: Any
-    """Whether it goes on."""
+    """Whether the path continues."""
 
 
 class _Walk:
-    """How paths go through one scene."""
+    """Path tracing in one scene."""
 
     def __init__(self, integrator: Any, scene: Any, sampler: Any) -> None:
         self.scene, self.sampler = scene, sampler
-        known: _Known = integrator._known(scene)
-        self.lamps, self.known = known.lamps, known.surfaces
+        facts: _Facts = integrator._facts(scene)
+        self.lamps, self.fluorescent = facts
         self.max_depth, self.rr_depth = integrator._max_depth, integrator._rr_depth
         self.hides = integrator._hides
         self.context = mi.BSDFContext()
@@ -163,24 +157,25 @@ class _Walk:
         )
 
     def step(self, state: _State) -> _State:
-        """One surface on."""
+        """Traces the next ray and scatters at the surface that it meets."""
         si = self.scene.ray_intersect(
             state.ray, mi.RayFlags.All, state.depth == 0, active=state.active
         )
         radiance = state.radiance + self._emitted(state, si)
         going = state.active & si.is_valid() & (state.depth + 1 < self.max_depth)
         if is_scalar() and not going:
-            # Where there is no surface, the renderer's scalar variants cannot be asked for one.
-            return _ended(state, radiance)
+            # Scalar variants must not access the BSDF of a ray that met no surface.
+            state.radiance, state.active = radiance, False
+            return state
         bsdf = si.bsdf(state.ray)
         moved, moved_nm = self._fluorescence(bsdf, si, going)
         lit = self._lit(state, si, bsdf, moved, moved_nm, going)
-        after = self._reflected(state, si, bsdf, moved, moved_nm, going)
+        after = self._scattered(state, si, bsdf, moved, moved_nm, going)
         after.radiance = radiance + lit
         return after
 
     def _emitted(self, state: _State, si: Any) -> Any:
-        """What the surface sends by itself, weighed against having sampled it as a light."""
+        """Light that the surface itself emits, weighted against sampling it as an emitter."""
         emitter = si.emitter(self.scene, state.active)
         is_there = state.active & (emitter != None)  # noqa: E711
         if self.hides:
@@ -194,8 +189,8 @@ class _Walk:
         return dr.select(is_there, state.throughput * weight * emitter.eval(si, is_there), 0)
 
     def _fluorescence(self, bsdf: Any, si: Any, active: Any) -> tuple[Any, Any]:
-        """Throughput and wavelengths of the light that the surface would shift."""
-        if not self.known:
+        """Throughputs and incident wavelengths of the surface's fluorescence."""
+        if not self.fluorescent:
             return no_fluorescence(si)
         u = self.sampler.next_2d()
         if is_scalar():
@@ -204,7 +199,7 @@ class _Walk:
         return dr.select(active, moved, 0), dr.select(active, nm, si.wavelengths)
 
     def _answer(self, bsdf: Any, si: Any, u: Any, active: Any) -> tuple[Any, Any]:
-        for surface, answer in self.known:
+        for surface, answer in self.fluorescent:
             if surface is bsdf:
                 return answer(si, u, active)
         return no_fluorescence(si)
@@ -212,7 +207,7 @@ class _Walk:
     def _lit(
         self, state: _State, si: Any, bsdf: Any, moved: Any, moved_nm: Any, active: Any
     ) -> Any:
-        """Light straight from an emitter, reflected and shifted: both parts, without a choice."""
+        """Light directly from an emitter: the reflected and the re-radiated part together."""
         active = active & mi.has_flag(bsdf.flags(), mi.BSDFFlags.Smooth)
         ds, light = self.scene.sample_emitter_direction(si, self.sampler.next_2d(), True, active)
         active = active & (ds.pdf != 0)
@@ -221,18 +216,18 @@ class _Walk:
         wo = si.to_local(ds.d)
         value, pdf = bsdf.eval_pdf(self.context, si, wo, active)
         total = value * light
-        if self.known:
-            there = mi.SurfaceInteraction3f(si)
-            there.wavelengths = moved_nm
-            shifted = self.scene.eval_emitter_direction(there, ds, active) / ds.pdf
-            total += _lobe(si, wo) * moved * dr.select(active, shifted, 0)
+        if self.fluorescent:
+            incident = mi.SurfaceInteraction3f(si)
+            incident.wavelengths = moved_nm
+            exciting = self.scene.eval_emitter_direction(incident, ds, active) / ds.pdf
+            total += _lobe(si, wo) * moved * dr.select(active, exciting, 0)
         weight = dr.select(ds.delta, 1, _weight(ds.pdf, pdf))
         return dr.select(active, state.throughput * weight * total, 0)
 
-    def _reflected(
+    def _scattered(
         self, state: _State, si: Any, bsdf: Any, moved: Any, moved_nm: Any, active: Any
     ) -> _State:
-        """The way on: a direction for all wavelengths, and for each whether it is another."""
+        """The state after scattering: one direction for all wavelengths, each kept or replaced."""
         drawn, weight = bsdf.sample(
             self.context, si, self.sampler.next_1d(), self.sampler.next_2d(), active
         )
@@ -240,7 +235,7 @@ class _Walk:
         is_through = mi.has_flag(drawn.sampled_type, mi.BSDFFlags.Null)
         is_valid = state.is_valid | (active & (is_through ^ True))
         ray = si.spawn_ray(si.to_world(drawn.wo))
-        if self.known:
+        if self.fluorescent:
             lobe = dr.select(is_delta, 0, ratio(_lobe(si, drawn.wo), drawn.pdf))
             choice = self.sampler.next_1d()
             weight, ray.wavelengths = self._chosen(
@@ -248,7 +243,7 @@ class _Walk:
             )
         throughput = state.throughput * weight
         eta = state.eta * drawn.eta
-        most = dr.max(self._worth(throughput, ray.wavelengths))
+        most = dr.max(self._expected(throughput, ray.wavelengths))
         active = active & (most != 0)
         chance = dr.minimum(dr.detach(most * dr.square(eta)), _MOST_LIKELY)
         is_risked = state.depth + 1 >= self.rr_depth
@@ -271,37 +266,31 @@ class _Walk:
     def _chosen(
         self, kept: Any, nm: Any, moved: Any, moved_nm: Any, choice: Any
     ) -> tuple[Any, Any]:
-        """For each wavelength, reflection or fluorescence, as likely as what they are worth."""
+        """For each wavelength, reflection or fluorescence, in proportion to the light expected."""
         weights, wavelengths = [], []
-        kept_worth, moved_worth = self._worth(kept, nm), self._worth(moved, moved_nm)
+        kept_light, moved_light = self._expected(kept, nm), self._expected(moved, moved_nm)
         for i in range(len(nm)):
-            total = kept_worth[i] + moved_worth[i]
-            likely = dr.select(total > 0, ratio(kept_worth[i], total), 1)
+            total = kept_light[i] + moved_light[i]
+            likely = dr.select(total > 0, ratio(kept_light[i], total), 1)
             u = choice + i / len(nm)
             u = dr.select(u >= 1, u - 1, u)
             is_kept = (u < likely) | (moved[i] <= 0)
-            carried = dr.select(is_kept, kept[i], moved[i])
+            throughput = dr.select(is_kept, kept[i], moved[i])
             chance = dr.select(is_kept, likely, 1 - likely)
-            weights.append(ratio(carried, chance))
+            weights.append(ratio(throughput, chance))
             wavelengths.append(dr.select(is_kept, nm[i], moved_nm[i]))
         return mi.Spectrum(*weights), mi.Spectrum(*wavelengths)
 
-    def _worth(self, carried: Any, nm: Any) -> Any:
-        """The light to expect of what carries light at some wavelengths, up to a factor."""
-        carried = dr.detach(carried)
-        if not self.known:
-            return carried
-        worth = [self.lamps.worth(dr.detach(each)) for each in nm]
-        return carried * mi.Spectrum(*worth)
-
-
-def _ended(state: _State, radiance: Any) -> _State:
-    state.radiance, state.active = radiance, False
-    return state
+    def _expected(self, throughput: Any, nm: Any) -> Any:
+        """The expected light after these throughputs at these wavelengths, up to a factor."""
+        throughput = dr.detach(throughput)
+        if not self.fluorescent:
+            return throughput
+        return throughput * mi.Spectrum(*(self.lamps.expected(dr.detach(each)) for each in nm))
 
 
 def _past_emitters(scene: Any, ray: Any, active: Any) -> Any:
-    """A ray from the camera that begins behind the lights that it is not to see."""
+    """A ray from the camera that starts behind the emitters hidden from it."""
 
     def on(ray: Any, active: Any) -> tuple[Any, Any]:
         si = scene.ray_intersect(ray, mi.RayFlags.Minimal, True, active=active)
@@ -318,13 +307,13 @@ def _past_emitters(scene: Any, ray: Any, active: Any) -> Any:
 
 
 def _lobe(si: Any, wo: Any) -> Any:
-    """The diffuse lobe with its cosine, 1/sr; zero through the surface."""
+    """The diffuse lobe with its cosine, 1/sr; 0 for transmission."""
     cos_o = mi.Frame3f.cos_theta(wo)
     return dr.select(mi.Frame3f.cos_theta(si.wi) * cos_o > 0, dr.abs(cos_o) / dr.pi, 0)
 
 
 def _weight(pdf: Any, other: Any) -> Any:
-    """The power heuristic."""
+    """The weight of the power heuristic for two densities."""
     a, b = dr.square(pdf), dr.square(other)
     weight = dr.detach(ratio(a, a + b))
     return dr.select(dr.isfinite(weight), weight, 0)

@@ -1,7 +1,7 @@
-"""A cube in Dr.Jit: what its materials reflect and re-radiate, and draws of wavelengths.
+"""A cube in Dr.Jit: reflectance and re-radiation of its materials, and draws of wavelengths.
 
-Wavelengths are arrays of type `mi.Float`, or spectra of such, in nm. Results are theirs in kind. Colors
-are linear, in the cube's RGB space; components count as the nearer end of 0 to 1.
+Wavelengths (nm) are arrays of type `mi.Float`, or spectra of them; results have the same type. Colors
+are linear, in the cube's RGB space, and their components are clamped to 0 to 1.
 """
 
 from __future__ import annotations
@@ -13,10 +13,9 @@ from .._cube import Cube
 from ._host import dr, mi, spectrum_of
 from ._jit_bells import Bells
 from ._jit_dyes import Dyes
-from ._jit_guide import Guide, guide
+from ._jit_guide import ByAbsorption, ByLampsToo, guide
 from ._jit_lookup import Corner, Lattice
 from ._lamps import Lamps
-from ._node_arrays import DyeArrays, node_arrays
 
 Fluorescence = Callable[..., tuple[Any, Any]]
 """Takes a color, wavelengths, two numbers and a mask; see `JitCube.fluorescence`."""
@@ -26,13 +25,13 @@ class JitCube:
     """A cube in the memory of the variant's device."""
 
     def __init__(self, cube: Cube) -> None:
-        arrays = node_arrays(cube)
-        self._lattice = Lattice(arrays)
+        model, packed = cube.header["model"], cube._native.packed_nodes()
         self._dyes: Dyes | Bells | None = None
-        if isinstance(arrays.shape, DyeArrays):
-            self._dyes = Dyes(arrays.shape, arrays.is_photon)
-        elif arrays.shape is not None:
-            self._dyes = Bells(arrays.shape, arrays.is_photon)
+        if model["kind"] == "dyes":
+            self._dyes = Dyes.of(cube)
+        elif model["kind"] == "analytic":
+            self._dyes = Bells(model)
+        self._lattice = Lattice(cube.resolution, packed, self._dyes is not None)
 
     @property
     def is_fluorescent(self) -> bool:
@@ -42,35 +41,22 @@ class JitCube:
     def reflectance(self, color: Any, nm: Any, active: Any = True) -> Any:
         """Share of the light at nm that is reflected at the same wavelength, 0 to 1."""
         corners = self._lattice.look_up(color, active)
-        return _each(lambda at: self._reflected(corners, at, active), nm)
-
-    def albedo(self, color: Any, nm: Any, active: Any = True) -> Any:
-        """Share of the light at nm that comes out at any wavelength, 0 to 1."""
-        corners = self._lattice.look_up(color, active)
-
-        def at(nm: Any) -> Any:
-            total = self._reflected(corners, nm, active)
-            if self._dyes is not None:
-                for corner in corners:
-                    total += corner.weight * self._dyes.returned(corner, nm, active)
-            return dr.minimum(total, 1)
-
-        return _each(at, nm)
+        return _each(lambda at: self._reflectance(corners, at, active), nm)
 
     def reradiation(self, color: Any, in_nm: Any, out_nm: Any, active: Any = True) -> Any:
-        """Energy that leaves per nm at out_nm by fluorescence, per unit that came at in_nm; 1/nm."""
+        """Energy re-radiated per nm at out_nm, per unit of energy incident at in_nm; 1/nm."""
         corners = self._lattice.look_up(color, active)
-        return _each(lambda i, o: self._moved(corners, i, o, active), in_nm, out_nm)
+        return _each(lambda i, o: self._reradiation(corners, i, o, active), in_nm, out_nm)
 
     def fluorescence(self, lamps: Lamps | None = None) -> Fluorescence:
-        """Draws of the wavelength of light that comes in, of what leaves by fluorescence.
+        """A function that draws the incident wavelength of light that leaves by fluorescence.
 
-        The function takes a color, the wavelengths (nm) that leave, two independent numbers in 0 to
-        1, and a mask. It returns the throughput and the wavelength that comes in; 0 and the one that
-        leaves where nothing fluoresces. Over the two numbers, the mean of the throughput times light
-        at the wavelength is the integral of the re-radiation times that light.
+        It takes a color, the wavelengths (nm) that leave, two independent numbers in 0 to 1, and a
+        mask. It returns throughput and incident wavelength; where nothing fluoresces, 0 and the
+        wavelength that leaves. The expected value of the throughput times the light at the drawn
+        wavelength is the integral of the re-radiation times that light.
 
-        Draws follow what is absorbed of the light of the `lamps`, or of any light.
+        Draws follow the absorption of light from the `lamps`, or of any light.
         """
         draws = None if self._dyes is None else guide(self._dyes, lamps)
 
@@ -80,7 +66,7 @@ class JitCube:
             corners = self._lattice.look_up(color, active)
             if dr.depth_v(out_nm) == 1:
                 return self._drawn(draws, corners, out_nm, choice, u, active)
-            # Shifted copies of one draw: alike for each wavelength, and spread over the wavelengths.
+            # Shifted copies of two numbers: each is uniform, and together they are spread evenly.
             count = len(out_nm)
             each = []
             for i in range(count):
@@ -91,15 +77,21 @@ class JitCube:
         return drawn
 
     def _drawn(
-        self, draws: Guide, corners: list[Corner], out_nm: Any, choice: Any, u: Any, active: Any
+        self,
+        draws: ByAbsorption | ByLampsToo,
+        corners: list[Corner],
+        out_nm: Any,
+        choice: Any,
+        u: Any,
+        active: Any,
     ) -> tuple[Any, Any]:
         with dr.suspend_grad():
             nm, pdf = draws.draw(corners, out_nm, choice, u, active)
-        moved = self._moved(corners, nm, out_nm, active)
+        reradiated = self._reradiation(corners, nm, out_nm, active)
         is_drawn = pdf > 0
-        return dr.select(is_drawn, moved / pdf, 0), dr.select(is_drawn, nm, out_nm)
+        return dr.select(is_drawn, reradiated / pdf, 0), dr.select(is_drawn, nm, out_nm)
 
-    def _reflected(self, corners: list[Corner], nm: Any, active: Any) -> Any:
+    def _reflectance(self, corners: list[Corner], nm: Any, active: Any) -> Any:
         total = mi.Float(0)
         for corner in corners:
             d = nm - corner.parabola.x
@@ -110,11 +102,11 @@ class JitCube:
             total += part
         return dr.clip(total, 0, 1)
 
-    def _moved(self, corners: list[Corner], in_nm: Any, out_nm: Any, active: Any) -> Any:
+    def _reradiation(self, corners: list[Corner], in_nm: Any, out_nm: Any, active: Any) -> Any:
         total = mi.Float(0)
         if self._dyes is not None:
             for corner in corners:
-                total += corner.weight * self._dyes.moved(corner, in_nm, out_nm, active)[0]
+                total += corner.weight * self._dyes.reradiation(corner, in_nm, out_nm, active)[0]
         return total
 
 

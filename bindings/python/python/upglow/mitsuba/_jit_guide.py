@@ -1,14 +1,15 @@
-"""Draws of the wavelengths that fluorescence takes its light from, in Dr.Jit.
+"""Draws of the incident wavelengths of fluorescence, in Dr.Jit.
 
-A dye absorbs over a hundred nanometers, and a lamp may shine in ten of them. Drawn by what is absorbed
-alone, few wavelengths would be lit, and those few would be bright: noise. Measured dyes are drawn by
-the product of both. Bells have no tables to multiply: some of their draws follow the lamps alone.
+A dye absorbs over a hundred nanometers, a lamp may emit in ten of them. Drawn in proportion to the
+absorption alone, few wavelengths would be lit, and the picture would be noisy. For measured dyes,
+draws follow the product of absorption and lamps. The analytic model has no tables to multiply: some
+of its draws follow the lamps alone.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 from ._host import dr, mi
 from ._jit_bells import Bells
@@ -17,38 +18,29 @@ from ._jit_lookup import Corner
 from ._lamps import Lamps
 
 _BELOW_ONE = 0.99999994
-"""The greatest single below 1: a choice of 1 would fall beyond every corner."""
+"""The greatest single-precision number below 1: a choice of 1 would select no corner."""
 
 
-class Guide(Protocol):
-    """A way to draw."""
-
-    def draw(
-        self, corners: list[Corner], out_nm: Any, choice: Any, u: Any, active: Any
-    ) -> tuple[Any, Any]:
-        """An incident wavelength (nm) and its density (1/nm), which is 0 where nothing is drawn."""
-
-
-def guide(dyes: Dyes | Bells, lamps: Lamps | None) -> Guide:
-    """The way to draw for a cube's dyes, under the lamps of a scene or under any light."""
+def guide(dyes: Dyes | Bells, lamps: Lamps | None) -> ByAbsorption | ByLampsToo:
+    """The strategy of draws for a cube's dyes, under the lamps of a scene or under any light."""
     if lamps is None:
         return ByAbsorption(dyes)
     if isinstance(dyes, Dyes):
-        return ByAbsorption(Dyes(dyes.arrays.lit_by(lamps.spread_power()), is_photon=False))
+        return ByAbsorption(dyes.lit_by(lamps.spread_power()))
     return ByLampsToo(ByAbsorption(dyes), lamps)
 
 
 @dataclass
 class ByAbsorption:
-    """Draws with the density of what is absorbed."""
+    """Draws in proportion to the absorption."""
 
     dyes: Dyes | Bells
 
     def draw(
         self, corners: list[Corner], out_nm: Any, choice: Any, u: Any, active: Any
     ) -> tuple[Any, Any]:
-        """As `Guide.draw`."""
-        parts = [c.weight * self.dyes.leaving(c, out_nm, active) for c in corners]
+        """An incident wavelength (nm) and its density (1/nm), which is 0 where nothing is drawn."""
+        parts = [c.weight * self.dyes.lossless_emission(c, out_nm, active) for c in corners]
         corner, rest = _chosen(corners, parts, choice)
         nm = self.dyes.draw(corner, out_nm, rest, u, active)
         return nm, self.pdf(corners, nm, out_nm, active)
@@ -57,14 +49,14 @@ class ByAbsorption:
         """The density of a draw, 1/nm."""
         total, whole = mi.Float(0), mi.Float(0)
         for corner in corners:
-            total += corner.weight * self.dyes.leaving(corner, out_nm, active)
-            whole += corner.weight * self.dyes.moved(corner, nm, out_nm, active)[1]
+            total += corner.weight * self.dyes.lossless_emission(corner, out_nm, active)
+            whole += corner.weight * self.dyes.reradiation(corner, nm, out_nm, active)[1]
         return dr.select(total > 0, whole / total, 0)
 
 
 @dataclass
 class ByLampsToo:
-    """Draws of which some follow the lamps."""
+    """Draws in proportion to the absorption, and some in proportion to the lamps' power."""
 
     other: ByAbsorption
     lamps: Lamps
@@ -72,10 +64,10 @@ class ByLampsToo:
     def draw(
         self, corners: list[Corner], out_nm: Any, choice: Any, u: Any, active: Any
     ) -> tuple[Any, Any]:
-        """As `Guide.draw`."""
+        """As `ByAbsorption.draw`."""
         follows, lit_nm, rest = self.lamps.draw(choice, u)
         nm, pdf = self.other.draw(corners, out_nm, rest, u, active)
-        # A density of 0 says that nothing fluoresces at out_nm.
+        # A density of 0 means that nothing fluoresces at out_nm.
         is_drawn = pdf > 0
         nm = dr.select(follows, lit_nm, nm)
         pdf = self.lamps.pdf(nm, self.other.pdf(corners, nm, out_nm, active))
@@ -83,7 +75,7 @@ class ByLampsToo:
 
 
 def _chosen(corners: list[Corner], parts: list[Any], choice: Any) -> tuple[Corner, Any]:
-    """The corner on which a choice between parts falls, and what is left of the choice, 0 to 1."""
+    """The corner that `choice` selects in proportion to `parts`, and `choice` rescaled to 0 to 1."""
     rest = dr.minimum(choice, _BELOW_ONE) * (parts[0] + parts[1] + parts[2] + parts[3])
     numbers, part = corners[0].numbers, parts[0]
     for corner, next_part in zip(corners[1:], parts[1:], strict=True):

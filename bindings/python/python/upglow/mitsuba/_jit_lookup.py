@@ -1,12 +1,14 @@
-"""Colors to the four materials that they are mixed of, in Dr.Jit."""
+"""Look-up of the four materials that a color's material is mixed of, in Dr.Jit."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ._host import dr, mi
-from ._node_arrays import NodeArrays
 
 
 @dataclass
@@ -14,28 +16,26 @@ class Corner:
     """One of the four materials of a color."""
 
     weight: Any
-    """Its share, 0 to 1."""
+    """Its weight, 0 to 1."""
     parabola: Any
-    """Edge (nm), and the coefficients of 1, d and d² at the distance d from it."""
+    """The reflectance of the packed layout in docs/cube-format.md."""
     numbers: Any
-    """As the second half of the packed layout in docs/cube-format.md; None where nothing fluoresces."""
+    """The fluorescence of the same; None if the cube has no fluorescence."""
 
 
 class Lattice:
-    """The nodes of a cube in the device's memory."""
+    """The packed nodes of a cube in the device's memory."""
 
-    def __init__(self, arrays: NodeArrays) -> None:
-        self.resolution = arrays.resolution
-        self.parabola = mi.Float(arrays.reflectance.ravel())
-        self.fluorescence = None
-        if arrays.shape is not None:
-            self.fluorescence = mi.Float(arrays.fluorescence.ravel())
+    def __init__(self, resolution: int, packed: NDArray[np.float32], is_fluorescent: bool) -> None:
+        self.resolution = resolution
+        self.parabola = mi.Float(packed[:, :4].ravel())
+        self.fluorescence = mi.Float(packed[:, 4:].ravel()) if is_fluorescent else None
 
     def look_up(self, color: Any, active: Any) -> list[Corner]:
-        """The corners of the tetrahedron around a color; components of 0 to 1.
+        """The corners of the tetrahedron around a color, whose components are clamped to 0 to 1.
 
-        It goes from the dark corner of the color's cell along the axis of the greatest fraction, and
-        comes to the bright one along that of the least.
+        The first step from the dark corner of the color's cell is along the axis of the greatest
+        fraction; the last step to the bright corner is along that of the least.
         """
         n = self.resolution
         scaled = [(n - 1) * dr.clip(color[axis], 0.0, 1.0) for axis in range(3)]

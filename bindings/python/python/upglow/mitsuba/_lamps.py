@@ -1,4 +1,4 @@
-"""Which wavelengths the lights of a scene send."""
+"""The spectral power of a scene's lights."""
 
 from __future__ import annotations
 
@@ -12,21 +12,20 @@ from ._children import children
 from ._host import dr, is_scalar, mi
 
 _BY_LAMPS = 0.5
-"""Share of the draws for bells that follow the lamps. More is noise where lamps are broad or
-fluorescent light excites; less is noise where lamps are narrow."""
+"""Share of the draws of the analytic model that follow the lamps. A larger share is noisier where
+lamps are broad or fluorescent light excites; a smaller one where lamps are narrow."""
 
 _FROM_LAMPS = 0.75
-"""Share of the light that is taken to come straight from lamps, and not from what fluoresces. More is
-noise where fluorescent light excites; less where lamps are narrow."""
+"""Share of the light on a surface that is assumed to come directly from lamps. A larger share is
+noisier where fluorescent light excites; a smaller one where lamps are narrow."""
 
-
-_WORTH_BY_LAMPS = 0.5
-"""Share of a wavelength's worth that the lamps decide. More is noise where fluorescent light goes from
-surface to surface; less is noise where lamps are narrow."""
+_EXPECTED_FROM_LAMPS = 0.5
+"""Share of a wavelength's expected light that depends on the lamps. A larger share is noisier where
+fluorescent light passes from surface to surface; a smaller one where lamps are narrow."""
 
 
 class Lamps:
-    """The wavelengths of a scene's lights as a density to draw from."""
+    """The spectral power of a scene's lights, as a density of wavelengths to draw from."""
 
     def __init__(self, scene: Any) -> None:
         power = np.zeros(FINE_NM.size)
@@ -40,27 +39,27 @@ class Lamps:
         self._density = mi.ContinuousDistribution(ends, values)
 
     def spread_power(self) -> NDArray[np.float64]:
-        """Power at each nm to expect on a surface: the lamps', and some at every wavelength."""
+        """Expected power on a surface at each nm: that of the lamps, and a constant part."""
         return _FROM_LAMPS * _relative(self._power) + (1 - _FROM_LAMPS) / self._power.size
 
-    def worth(self, nm: Any) -> Any:
-        """How much light to expect at a wavelength, 1 on average from 300 to 830 nm; more than 0."""
+    def expected(self, nm: Any) -> Any:
+        """Expected light at a wavelength, 1 on average over 300 to 830 nm; more than 0."""
         share = self._density.eval_pdf_normalized(nm) * float(FINE_NM[-1] - FINE_NM[0])
-        return _WORTH_BY_LAMPS * share + (1 - _WORTH_BY_LAMPS)
+        return _EXPECTED_FROM_LAMPS * share + (1 - _EXPECTED_FROM_LAMPS)
 
     def draw(self, choice: Any, u: Any) -> tuple[Any, Any, Any]:
-        """Whether a draw follows the lamps; the wavelength if so; what is left of the choice."""
+        """Whether a draw follows the lamps; the wavelength if so; `choice` rescaled to 0 to 1."""
         follows = choice < _BY_LAMPS
         rest = dr.select(follows, choice / _BY_LAMPS, (choice - _BY_LAMPS) / (1 - _BY_LAMPS))
         return follows, self._density.sample(u), rest
 
     def pdf(self, nm: Any, other: Any) -> Any:
-        """The density of a draw, 1/nm, of which that by what is absorbed is `other`."""
+        """Density of a draw, 1/nm; `other` is the density of draws that do not follow the lamps."""
         return _BY_LAMPS * self._density.eval_pdf_normalized(nm) + (1 - _BY_LAMPS) * other
 
 
 def _power(emitter: Any) -> NDArray[np.float64]:
-    """The power of a light at each wavelength, up to a factor; zeros where it does not say."""
+    """The power of a light at each wavelength, up to a factor; zeros if it exposes no spectrum."""
     power = np.zeros(FINE_NM.size)
     for _, part in children(emitter):
         if isinstance(part, mi.Texture):

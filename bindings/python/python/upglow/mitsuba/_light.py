@@ -1,4 +1,4 @@
-"""Lights for the renderer's emitters."""
+"""Spectra for Mitsuba's emitters."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ def spectrum(
 ) -> dict[str, Any]:
     """A light as a spectrum for `mitsuba.load_dict`, from 300 to 830 nm by 1 nm.
 
-    It goes where an emitter takes `radiance`, `irradiance` or `intensity`. The renderer's own lights
-    (`d65`, `rgb` and what is made of them) are dark below 360 nm, where many dyes absorb.
+    Use it as the `radiance`, `irradiance` or `intensity` of an emitter. Mitsuba's own lights (`d65`,
+    `rgb` and all based on them) are 0 below 360 nm, where many dyes absorb.
 
     Parameters
     ----------
@@ -28,9 +28,9 @@ def spectrum(
     scale
         Factor of the light.
     by
-        What a scale of 1 means. ``white``: the perfect diffuser has Y = 1 under an environment of
-        this radiance. ``power``: as much power from 300 to 830 nm as `reference` has at Y = 1; for
-        lamps that the eye hardly sees.
+        Meaning of a scale of 1. ``white``: the perfect diffuser has Y = 1 under an environment of
+        this radiance. ``power``: the power from 300 to 830 nm is that of `reference` at Y = 1; for
+        lamps of low luminance, such as ultraviolet ones.
     reference
         The light that ``power`` refers to.
 
@@ -52,7 +52,7 @@ def spectrum(
         measure = Illuminant(reference).power
         factor = scale * measure.sum() / _luminance(measure) / power.sum()
     else:
-        raise ValueError(f"by {by!r}, expected white or power")
+        raise ValueError(f"by is {by!r}, expected white or power")
     values = ", ".join(f"{value:.9g}" for value in factor * power)
     return {
         "type": "regular",
@@ -63,10 +63,9 @@ def spectrum(
 
 
 def _luminance(power: NDArray[np.float64]) -> float:
-    """Y as the renderer's films have it: 1 for a power of about 1 at every wavelength."""
-    y = np.array([mi.cie1931_y(nm) for nm in FINE_NM.tolist()]) if is_scalar() else _luminosity()
+    """Y as Mitsuba's films define it: about 1 for a power of 1 at every wavelength."""
+    if is_scalar():
+        y = np.array([mi.cie1931_y(nm) for nm in FINE_NM.tolist()])
+    else:
+        y = np.array(mi.cie1931_y(mi.Float(FINE_NM.astype(np.float32))), dtype=np.float64)
     return float(power @ y) * float(mi.MI_CIE_Y_NORMALIZATION)
-
-
-def _luminosity() -> NDArray[np.float64]:
-    return np.array(mi.cie1931_y(mi.Float(FINE_NM.astype(np.float32))), dtype=np.float64)

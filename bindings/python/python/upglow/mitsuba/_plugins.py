@@ -1,4 +1,4 @@
-"""The names by which scenes know upglow."""
+"""Registration of the plugins with Mitsuba."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ _in_variants: set[str] = set()
 
 @cache
 def register() -> None:
-    """Registers the BSDF `upglow` and the integrator `upglow_path` with the renderer.
+    """Registers the BSDF `upglow` and the integrator `upglow_path` with Mitsuba.
 
-    In the variant that is set, and in each that is set from now on. Importing `upglow.mitsuba` does
-    it; a second time changes nothing.
+    It applies to the current variant and to all that are set later. Importing `upglow.mitsuba` calls
+    it; a second call has no effect.
     """
     mi.detail.add_variant_callback(_on_variant)
     if mi.variant() is not None:
@@ -39,8 +39,8 @@ def _maker(class_of_variant: Callable[[], Any]) -> Callable[[Any], Any]:
     missing = what_is_missing()
     if missing:
         return partial(_refuse, missing)
-    made = class_of_variant()
-    return lambda props: made(props)
+    plugin = class_of_variant()
+    return lambda props: plugin(props)
 
 
 def _refuse(missing: str, _: Any) -> Any:

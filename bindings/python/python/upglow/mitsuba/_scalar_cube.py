@@ -1,4 +1,4 @@
-"""A cube where the variant works on one ray at a time: each question is one call of the library."""
+"""A cube for variants that work on one ray at a time: each evaluation is a call of the library."""
 
 from __future__ import annotations
 
@@ -11,13 +11,11 @@ from ._host import spectrum_of
 from ._jit_cube import Fluorescence
 from ._lamps import Lamps
 
-
 _BELOW_ONE = 1 - 2.0**-24
-"""Rounding may lift a choice to 1, which the library refuses; single precision keeps this below 1."""
-
+"""The greatest single-precision number below 1: the library refuses 1, to which rounding may lead."""
 
 _TINY = 1e-12
-"""A share of fluorescence below which there is none to divide by."""
+"""A lower bound of probabilities, so that nothing is divided by 0."""
 
 
 class ScalarCube:
@@ -35,19 +33,8 @@ class ScalarCube:
         """Share of the light at nm that is reflected at the same wavelength, 0 to 1."""
         return spectrum_of(self._cube.reflectance(_rgb(color), list(nm)))
 
-    def albedo(self, color: Any, nm: Any, active: Any = True) -> Any:
-        """Share of the light at nm that comes out at any wavelength, 0 to 1."""
-        return spectrum_of(self._cube.albedo(_rgb(color), list(nm)))
-
-    def reradiation(self, color: Any, in_nm: Any, out_nm: Any, active: Any = True) -> Any:
-        """Energy that leaves per nm at out_nm by fluorescence, per unit that came at in_nm; 1/nm."""
-        return spectrum_of(self._cube.reradiation(_rgb(color), list(in_nm), list(out_nm)))
-
     def fluorescence(self, lamps: Lamps | None = None) -> Fluorescence:
-        """Draws of the wavelength of light that comes in, as `JitCube.fluorescence`.
-
-        Half of them follow the lamps, if there are any.
-        """
+        """As `JitCube.fluorescence`. Half of the draws follow the lamps, if there are any."""
 
         def drawn(color: Any, out_nm: Any, choice: Any, u: Any, active: Any = True) -> Any:
             return self._drawn(lamps, _rgb(color), np.array(list(out_nm)), choice, u)
@@ -60,10 +47,10 @@ class ScalarCube:
         follows = np.zeros(len(known), dtype=bool)
         lit_nm = known
         if lamps is not None:
-            told = [lamps.draw(*pair) for pair in pairs.tolist()]
-            follows, lit_nm, pairs[:, 0] = (np.array(part) for part in zip(*told, strict=True))
+            draws = [lamps.draw(*pair) for pair in pairs.tolist()]
+            follows, lit_nm, pairs[:, 0] = (np.array(part) for part in zip(*draws, strict=True))
         kept = self._cube.incident_elastic_probability(rgb, known)
-        # Choices above the probability of reflection fall on fluorescence.
+        # A choice above the probability of reflection selects fluorescence.
         pairs[:, 0] = kept + (1 - kept) * pairs[:, 0]
         found = self._cube.sample_incident(rgb, known, np.minimum(pairs, _BELOW_ONE))
         is_drawn = ~found.is_elastic & np.isfinite(found.nm)

@@ -1,4 +1,4 @@
-"""Fluorescence through the renderer's own surfaces that hold other surfaces."""
+"""Fluorescence through Mitsuba's BSDFs that contain other BSDFs."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ Fluorescence = Callable[[Any, Any, Any], tuple[Any, Any]]
 
 
 def fluorescent_surfaces(scene: Any, lamps: Lamps) -> list[tuple[Any, Fluorescence]]:
-    """The surfaces of a scene with such lamps that fluoresce, each with its draws.
+    """The BSDFs of a scene that fluoresce, each with the function that draws its fluorescence.
 
-    Warns of those that hide a fluorescent surface in a way that is not known here.
+    Warns of BSDFs that contain a fluorescent one and are not supported.
     """
     answers = [(surface, _fluorescence(surface, lamps)) for surface in _surfaces(scene)]
     return [(surface, answer) for surface, answer in answers if answer is not None]
@@ -34,7 +34,7 @@ def _fluorescence(surface: Any, lamps: Lamps) -> Fluorescence | None:
     kind = surface.class_name()
     if kind not in _THROUGH:
         warnings.warn(
-            f"fluorescence inside {kind} is lost: upglow_path knows upglow itself and "
+            f"fluorescence inside {kind} is lost: upglow_path supports it in upglow itself and in "
             f"{', '.join(_THROUGH)}",
             stacklevel=2,
         )
@@ -44,7 +44,7 @@ def _fluorescence(surface: Any, lamps: Lamps) -> Fluorescence | None:
 
 def _two_sided(parts: dict[str, Any], inner: dict[str, Fluorescence | None]) -> Fluorescence:
     front = inner["brdf_0"]
-    # The same surface on both sides is asked once.
+    # The same BSDF on both sides is evaluated once.
     back = front if parts.get("brdf_1") is parts["brdf_0"] else inner.get("brdf_1")
 
     def answer(si: Any, u: Any, active: Any) -> tuple[Any, Any]:
@@ -52,9 +52,9 @@ def _two_sided(parts: dict[str, Any], inner: dict[str, Fluorescence | None]) -> 
         turned = mi.SurfaceInteraction3f(si)
         turned.wi.z = dr.abs(si.wi.z)
         if back is front:
-            return _asked(front, turned, u, active)
-        ahead = _asked(front, turned, u, active & is_front)
-        behind = _asked(back, turned, u, active & (is_front ^ True))
+            return _drawn(front, turned, u, active)
+        ahead = _drawn(front, turned, u, active & is_front)
+        behind = _drawn(back, turned, u, active & (is_front ^ True))
         return _select(is_front, ahead, behind)
 
     return answer
@@ -64,7 +64,7 @@ def _masked(parts: dict[str, Any], inner: dict[str, Fluorescence | None]) -> Flu
     opacity, nested = parts["opacity"], inner["nested_bsdf"]
 
     def answer(si: Any, u: Any, active: Any) -> tuple[Any, Any]:
-        throughput, nm = _asked(nested, si, u, active)
+        throughput, nm = _drawn(nested, si, u, active)
         return throughput * dr.clip(opacity.eval_1(si, active), 0, 1), nm
 
     return answer
@@ -76,11 +76,11 @@ def _blended(parts: dict[str, Any], inner: dict[str, Fluorescence | None]) -> Fl
     def answer(si: Any, u: Any, active: Any) -> tuple[Any, Any]:
         w = dr.clip(weight.eval_1(si, active), 0, 1)
         is_second = u.x < w
-        # What is left of the choice between surfaces is the choice within one.
+        # Rescaled, the number that chose the BSDF serves as the choice inside it.
         rest = dr.select(is_second, u.x / dr.maximum(w, 1e-7), (u.x - w) / dr.maximum(1 - w, 1e-7))
         inside = mi.Point2f(dr.clip(rest, 0, 1), u.y)
-        ahead = _asked(second, si, inside, active & is_second)
-        behind = _asked(first, si, inside, active & (is_second ^ True))
+        ahead = _drawn(second, si, inside, active & is_second)
+        behind = _drawn(first, si, inside, active & (is_second ^ True))
         return _select(is_second, ahead, behind)
 
     return answer
@@ -93,12 +93,12 @@ _THROUGH: dict[str, Callable[..., Fluorescence]] = {
 }
 
 
-def _asked(answer: Fluorescence | None, si: Any, u: Any, active: Any) -> tuple[Any, Any]:
+def _drawn(answer: Fluorescence | None, si: Any, u: Any, active: Any) -> tuple[Any, Any]:
     return no_fluorescence(si) if answer is None else answer(si, u, active)
 
 
 def no_fluorescence(si: Any) -> tuple[Any, Any]:
-    """The answer of a surface that does not fluoresce."""
+    """The result for a surface that does not fluoresce."""
     return mi.Spectrum(0), mi.Spectrum(si.wavelengths)
 
 
@@ -107,7 +107,7 @@ def _select(mask: Any, ahead: tuple[Any, Any], behind: tuple[Any, Any]) -> tuple
 
 
 def _surfaces(scene: Any) -> list[Any]:
-    """Every surface that a shape of the scene has, in the scene's order."""
+    """Every BSDF of the scene's shapes, in the scene's order."""
     found: list[Any] = []
     seen: list[Any] = []
     waiting = [scene]
