@@ -1,4 +1,4 @@
-/// Which sides of a BSDF change wavelengths, also behind Mitsuba's wrapper `twosided`.
+/// Which sides of a BSDF fluoresce, including BSDFs inside Mitsuba's wrapper `twosided`.
 
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace upglow_mitsuba {
 
-/// What a BSDF holds, by the path that Python's `mitsuba.traverse` gives it.
+/// The objects inside a BSDF, by their paths in Python's `mitsuba.traverse`.
 class Nested final : public mitsuba::TraversalCallback {
 public:
     explicit Nested(mitsuba::Object *object) { object->traverse(this); }
@@ -34,7 +34,7 @@ private:
     std::string m_prefix;
 };
 
-/// The fluorescent surfaces on the two sides of a BSDF; null where a side keeps all wavelengths.
+/// The fluorescent surfaces on the two sides of a BSDF; null for a side that does not fluoresce.
 template <typename Float, typename Spectrum> class FluorescentSides {
 public:
     using Surface = Fluorescence<Float, Spectrum>;
@@ -45,30 +45,27 @@ public:
     explicit FluorescentSides(const BSDF *bsdf) {
         if ((m_front = dynamic_cast<const Surface *>(bsdf)))
             return;
-        // To traverse changes nothing, though its type does not say so.
+        // Traversal does not change the BSDF, although it is not declared const.
         Nested nested(const_cast<BSDF *>(bsdf));
-        if (bsdf->class_name() == "TwoSidedBRDF")
-            set_sides(nested);
+        if (bsdf->class_name() == "TwoSidedBRDF") {
+            auto front = nested.objects.find("brdf_0"), back = nested.objects.find("brdf_1");
+            auto end = nested.objects.end();
+            m_front  = front == end ? nullptr : dynamic_cast<const Surface *>(front->second);
+            m_back   = back == end ? m_front : dynamic_cast<const Surface *>(back->second);
+        }
         for (auto &[path, object] : nested.objects) {
             const Surface *surface = dynamic_cast<const Surface *>(object);
             m_loses |= surface && surface != m_front && surface != m_back;
         }
     }
 
-    /// The surface that light meets whose direction has this cosine to the normal.
+    /// The surface on the side of a direction with this cosine to the normal.
     const Surface *met_at(float cosine) const { return cosine > 0.f ? m_front : m_back; }
 
-    /// Whether there is a fluorescent surface in it that nobody but the wrapper can reach.
+    /// Whether it contains a fluorescent surface that integrators cannot access.
     bool loses() const { return m_loses; }
 
 private:
-    void set_sides(const Nested &nested) {
-        auto front = nested.objects.find("brdf_0"), back = nested.objects.find("brdf_1");
-        auto end = nested.objects.end();
-        m_front  = front == end ? nullptr : dynamic_cast<const Surface *>(front->second);
-        m_back   = back == end ? m_front : dynamic_cast<const Surface *>(back->second);
-    }
-
     const Surface *m_front = nullptr, *m_back = nullptr;
     bool m_loses = false;
 };

@@ -1,4 +1,4 @@
-/// Reflectances as arrays that traced code can read: no call of a host's function can be traced.
+/// Tables of reflectances for traced code, which cannot call functions of the library.
 
 #pragma once
 
@@ -16,16 +16,16 @@
 
 namespace upglow_mitsuba {
 
-/// First and last wavelength of a row, nm: what the curves of a cube cover, and what Mitsuba's sensors
-/// see. Light outside finds the reflectance of the nearer end.
+/// First and last wavelength of a row, nm: the range of a cube's curves, which contains that of
+/// Mitsuba's sensors. Wavelengths outside are clamped.
 constexpr uint32_t FIRST_NM = 300, LAST_NM = 830;
 
-/// Samples of a row, 1 nm apart, as the curves of dyes have them: straight lines between samples are
-/// then at most 2e-4 off. By 2 nm they are 7e-3 off where such a curve begins or ends.
+/// Samples of a row, 1 nm apart as in the curves of dyes: the error of linear interpolation is then at
+/// most 2e-4. With steps of 2 nm it is 7e-3 at the ends of these curves.
 constexpr uint32_t SAMPLES = LAST_NM - FIRST_NM + 1;
 
-/// What stands for a reflectance of 1. Two samples of 16 bits share a word: 35 MB for 32 nodes along
-/// each axis, and at most 8e-6 off.
+/// The integer for a reflectance of 1. Two samples of 16 bits share a word: 35 MB for 32 nodes along
+/// each axis, with an error of at most 8e-6.
 constexpr uint32_t ONE = 0xffff;
 
 /// Words of a row.
@@ -61,12 +61,12 @@ public:
         return row(drjit::zeros<UInt32>(), lambda_nm, active);
     }
 
-    /// Reflectance of a color, each component 0 to 1: the blend of the four nodes around it, as
+    /// Reflectance of a color with components in 0 to 1: the blend of the four nodes around it, as
     /// docs/cube-format.md defines it.
     Spectrum at(const Color &rgb, const Wavelength &lambda_nm, const Mask &active) const {
-        Color place    = rgb * float(m_nodes - 1);
-        Color low      = drjit::minimum(drjit::floor(place), float(m_nodes - 2));
-        Color fraction = place - low;
+        Color scaled   = rgb * float(m_nodes - 1);
+        Color low      = drjit::minimum(drjit::floor(scaled), float(m_nodes - 2));
+        Color fraction = scaled - low;
         Float greatest = drjit::max(fraction), least = drjit::min(fraction);
         Float middle   = drjit::sum(fraction) - greatest - least;
         UInt32 dark    = node(low), bright = dark + 1 + m_nodes + m_nodes * m_nodes;
@@ -77,7 +77,7 @@ public:
                row(bright, lambda_nm, active) * least;
     }
 
-    /// The array that all of it reads.
+    /// The array that look-ups read.
     const UInt32 &words() const { return m_words; }
 
 private:
@@ -95,22 +95,24 @@ private:
     }
 
     static uint32_t sample(const UpglowMaterial &material, uint32_t i) {
-        return uint32_t(reflectance_of(material, float(FIRST_NM + i)) * float(ONE) + 0.5f);
+        float reflectance;
+        expect_ok(upglow_reflectance(&material, float(FIRST_NM + i), &reflectance));
+        return uint32_t(reflectance * float(ONE) + 0.5f);
     }
 
     UInt32 node(const Color &low) const {
         return UInt32(low[0]) + m_nodes * (UInt32(low[1]) + m_nodes * UInt32(low[2]));
     }
 
-    /// The step along the axis of the greatest fraction; which of equal ones is no matter, since the
-    /// node between them has no weight.
+    /// The step along the axis of the greatest fraction. The choice between equal fractions does not
+    /// matter: the node that depends on it has the weight 0.
     UInt32 first_step(const Color &f) const {
         UInt32 red_or_green = drjit::select(f[0] >= f[1], UInt32(1), UInt32(m_nodes));
         return drjit::select(drjit::maximum(f[0], f[1]) >= f[2], red_or_green,
                              UInt32(m_nodes * m_nodes));
     }
 
-    /// The step along the axis of the least fraction; of equal ones any, for the same reason.
+    /// The step along the axis of the least fraction; equal ones do not matter for the same reason.
     UInt32 last_step(const Color &f) const {
         UInt32 green_or_red = drjit::select(f[1] <= f[0], UInt32(m_nodes), UInt32(1));
         return drjit::select(f[2] <= drjit::minimum(f[0], f[1]), UInt32(m_nodes * m_nodes),
@@ -137,7 +139,7 @@ private:
     UInt32 m_words;
 };
 
-/// The table of a cube's nodes, made at the first call and shared for as long as anybody holds it.
+/// The table of a cube's nodes. Surfaces that use it at the same time share one copy.
 template <typename Float, typename Spectrum>
 std::shared_ptr<const ReflectanceTable<Float, Spectrum>>
 shared_node_table(const std::shared_ptr<const Cube> &cube) {
@@ -145,11 +147,11 @@ shared_node_table(const std::shared_ptr<const Cube> &cube) {
     static std::mutex mutex;
     static std::map<std::weak_ptr<const Cube>, std::weak_ptr<const Table>, std::owner_less<>> made;
     std::lock_guard<std::mutex> guard(mutex);
-    std::weak_ptr<const Table> &place = made[cube];
-    if (std::shared_ptr<const Table> table = place.lock())
+    std::weak_ptr<const Table> &entry = made[cube];
+    if (std::shared_ptr<const Table> table = entry.lock())
         return table;
     auto table = std::make_shared<const Table>(Table::of_nodes(*cube));
-    place      = table;
+    entry      = table;
     return table;
 }
 

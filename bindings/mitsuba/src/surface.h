@@ -1,4 +1,4 @@
-/// A diffuse surface whose reflectance is that of a material of a cube.
+/// A diffuse surface with the reflectance of a cube's material.
 
 #pragma once
 
@@ -17,28 +17,24 @@
 #include "cube.h"
 #include "reflectance_table.h"
 
-#if defined(__x86_64__) && !defined(__AVX2__)
-#  error "expected -march=haswell: Mitsuba's wheel passes packets of numbers in AVX registers"
-#endif
-
 namespace upglow_mitsuba {
 
 using namespace mitsuba;
 
-/// What to say where a color was turned into a spectrum before it came here, or never was a color.
+/// The message for a parameter that is not a color, or that Mitsuba has upsampled to a spectrum.
 constexpr const char *NO_COLOR =
-    "upglow: the parameter \"color\" is a spectrum or no color, expected three numbers "
+    "upglow: the parameter \"color\" is a spectrum or not a color, expected three numbers "
     "(<vector name=\"color\" value=\"0.9,0.05,0.8\"/>) or a texture of them "
     "(a bitmap with raw=true), linear in the cube's RGB space";
 
-/// The same to Mitsuba's own integrators as its BSDF `diffuse`, with a reflectance of ours.
+/// A BSDF like Mitsuba's `diffuse`, with the reflectance of a cube's material.
 template <typename Float, typename Spectrum>
 class Surface : public BSDF<Float, Spectrum> {
 public:
     MI_IMPORT_BASE(BSDF, m_flags, m_components)
     MI_IMPORT_TYPES(Texture)
 
-    /// Traced code cannot call the library: it reads tables that were made with it.
+    /// Traced code cannot call the library; it reads tables made with it.
     static constexpr bool Traced = dr::is_jit_v<Float>;
     using Table = ReflectanceTable<Float, Spectrum>;
 
@@ -117,7 +113,7 @@ public:
     }
 
 protected:
-    /// The material at a point, looked up in the library: not for traced code.
+    /// The material at a point, looked up by the library; not for traced code.
     UpglowMaterial material_at(const SurfaceInteraction3f &si) const {
         if (!m_texture)
             return m_material;
@@ -127,7 +123,7 @@ protected:
 
 private:
     void set_color(ScalarColor3f color) {
-        m_asked_color = m_color;  // What it stays if the new one is refused.
+        m_asked_color = m_color;  // Stays if the new color is refused.
         m_material    = m_cube->look_up({ color[0], color[1], color[2] });
         m_color = m_asked_color = color;
         if constexpr (Traced)
@@ -147,16 +143,16 @@ private:
 
     static Texture *texture_of(const Properties &props) {
         Texture *texture = props.try_get<Texture>("color");
-        // What does not vary over a surface is a spectrum, some of which answer with coefficients.
+        // Textures without spatial variation are spectra, some of which `eval_3` has coefficients of.
         if (!texture || !texture->is_spatially_varying() || !has_colors(*texture))
             throw std::runtime_error(NO_COLOR);
         return texture;
     }
 
-    /// Textures tell whether they hold colors only when they are asked for one.
+    /// Whether a texture has colors, which only shows when one is evaluated.
     static bool has_colors(const Texture &texture) {
         if (texture.class_name() == "MeshAttribute")
-            return true;  // It cannot be asked without its mesh.
+            return true;  // It cannot be evaluated without its mesh.
         try {
             texture.eval_3(dr::zeros<SurfaceInteraction3f>());
             return true;
@@ -165,10 +161,10 @@ private:
         }
     }
 
-    /// The texture's color, and the nearest one of the cube where it is outside.
+    /// The texture's color, clamped to the cube.
     Color3f color_at(const SurfaceInteraction3f &si, Mask active) const {
         Color3f rgb = m_texture->eval_3(si, active);
-        // What is no number compares false, and becomes 0.
+        // NaN compares false, and becomes 0.
         return dr::select(rgb > 0.f, dr::minimum(rgb, 1.f), 0.f);
     }
 
@@ -191,11 +187,11 @@ private:
     std::shared_ptr<const Cube> m_cube;
     ref<Texture> m_texture;
     ScalarColor3f m_color = 0.f;
-    /// What Python writes to before it says that it did.
+    /// Python writes to this before it calls `parameters_changed`.
     ScalarColor3f m_asked_color = 0.f;
     UpglowMaterial m_material{};
     std::shared_ptr<const Table> m_table;
-    /// The table's array once more, where Dr.Jit finds it when it replays a traced function.
+    /// A reference to the table's array, for Dr.Jit to find when it replays a traced function.
     typename Table::UInt32 m_words;
 
     MI_DECLARE_CLASS(UpglowSurface)

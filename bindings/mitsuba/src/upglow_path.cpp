@@ -1,4 +1,4 @@
-/// The plugin `upglow_path`: path tracing in which a wavelength may change on its way.
+/// The plugin `upglow_path`: path tracing in which wavelengths may change.
 
 #include <map>
 
@@ -15,24 +15,20 @@
 #include "fluorescent_sides.h"
 #include "variants.h"
 
-#if defined(__x86_64__) && !defined(__AVX2__)
-#  error "expected -march=haswell: Mitsuba's wheel passes packets of numbers in AVX registers"
-#endif
-
 namespace upglow_mitsuba {
 
 using namespace mitsuba;
 
-/// Paths that survive a draw survive it with at most this probability, so that even a path that loses
-/// nothing ends. Nearer to 1 paths are longer, further from it noisier. Mitsuba's `path` has the same.
+/// Greatest survival probability in Russian roulette, so that a path without losses ends too. A
+/// greater one makes paths longer, a smaller one pictures noisier. Mitsuba's `path` has the same.
 constexpr float GREATEST_SURVIVAL = 0.95f;
 
-/// Path tracing with emitter sampling, both combined by multiple importance sampling with the power
+/// Path tracing with emitter sampling, combined by multiple importance sampling with the power
 /// heuristic.
 ///
-/// Each ray carries four wavelengths, and a fluorescent surface may change each without the others:
-/// they share their geometry, and all lobes that re-radiate are those that reflect. Directions alone
-/// decide the weights of the two strategies, so that they stay right whatever wavelengths are drawn.
+/// Each ray carries four wavelengths, which share the geometry. A fluorescent surface may change each
+/// of them independently; re-radiation has the same distribution of directions as reflection. The
+/// weights of the two strategies depend on directions only, so they are valid for any wavelengths.
 ///
 /// # Source
 ///
@@ -86,24 +82,24 @@ public:
     MI_DECLARE_CLASS(FluorescentPath)
 
 private:
-    /// A path on its way from the camera.
+    /// The state of a path.
     struct Walk {
         explicit Walk(const RayDifferential3f &camera) : ray(Ray3f(camera)) {}
 
-        /// Where it goes next. Its wavelengths are the current ones; the film keeps the camera's.
+        /// The next ray, with the current wavelengths; the film keeps the camera's.
         Ray3f ray;
         Spectrum radiance   = 0.f;
         Spectrum throughput = 1.f;
         /// Product of the relative indices of refraction so far.
         float eta = 1.f;
-        /// Surfaces met so far.
+        /// Number of surfaces so far.
         uint32_t depth = 0;
-        /// The last surface, and the density with which its BSDF drew the ray's direction.
+        /// The last surface, and the density of the ray's direction that its BSDF drew.
         Interaction3f from = dr::zeros<Interaction3f>();
         float density      = 1.f;
-        /// Whether no emitter's sample could have found that direction.
+        /// Whether that direction came from a Dirac delta, which emitter sampling never finds.
         bool is_delta = true;
-        /// Whether the surface was one to go straight through.
+        /// Whether the path passed straight through the surface.
         bool is_null = true;
     };
 
@@ -114,7 +110,7 @@ private:
         return scene.ray_intersect(walk.ray, uint32_t(RayFlags::All), walk.depth == 0);
     }
 
-    /// What an emitter that the path ran into adds.
+    /// Radiance from an emitter that the ray hits.
     Spectrum emitted(const Scene &scene, const SurfaceInteraction3f &si, const Walk &walk) const {
         const Emitter *emitter = si.emitter(&scene);
         if (!emitter || (walk.depth == 0 && m_hide_emitters))
@@ -125,7 +121,7 @@ private:
         return walk.throughput * emitter->eval(si) * power_weight(walk.density, other);
     }
 
-    /// The light that an emitter's sample sends through the surface towards the camera.
+    /// Radiance towards the camera due to a sample of an emitter.
     Spectrum lit_by_emitters(const Scene &scene, Sampler &sampler,
                              const SurfaceInteraction3f &si) const {
         const BSDF *bsdf = si.shape->bsdf();
@@ -136,18 +132,19 @@ private:
         auto [value, density] = bsdf->eval_pdf(BSDFContext(), si, si.to_local(sample.d));
         Spectrum light = value * kept;
         if (const Surface *surface = surface_at(bsdf, si))
-            light += density * shifted(scene, sampler, si, *surface, u);
+            light += density * reradiated(scene, sampler, si, *surface, u);
         if (sample.pdf == 0.f || dr::all(light == 0.f) || scene.ray_test(si.spawn_ray_to(sample.p)))
             return 0.f;
         return light * (sample.delta ? 1.f : power_weight(sample.pdf, density));
     }
 
-    /// The same emitter's light that the surface moves to the path's wavelengths. The direction of an
-    /// emitter's sample does not depend on wavelengths, so it is drawn once more for other ones.
-    Spectrum shifted(const Scene &scene, Sampler &sampler, const SurfaceInteraction3f &si,
-                     const Surface &surface, const Point2f &u) const {
+    /// The same emitter's light that the surface re-radiates at the path's wavelengths. The direction
+    /// of an emitter's sample does not depend on wavelengths: the same `u` gives the same direction.
+    Spectrum reradiated(const Scene &scene, Sampler &sampler, const SurfaceInteraction3f &si,
+                        const Surface &surface, const Point2f &u) const {
         Point2f v  = sampler.next_2d();
-        auto drawn = surface.draw_fluorescent(si, spread(v.x()), spread(v.y()));
+        auto alone = Surface::Events::FluorescenceAlone;
+        auto drawn = surface.draw_incident(alone, si, spread(v.x()), spread(v.y()));
         if (dr::all(drawn.weight == 0.f))
             return 0.f;
         SurfaceInteraction3f incident = si;
@@ -155,7 +152,7 @@ private:
         return drawn.weight * scene.sample_emitter_direction(incident, u, false).second;
     }
 
-    /// Draws the next direction, and the next wavelengths; whether there is anything left to follow.
+    /// Draws the next direction and wavelengths; returns whether the path continues.
     bool scatter(Sampler &sampler, const SurfaceInteraction3f &si, Walk &walk) const {
         const BSDF *bsdf = si.shape->bsdf();
         float lobe       = sampler.next_1d();
@@ -166,7 +163,8 @@ private:
         walk.ray = si.spawn_ray(si.to_world(sample.wo));
         if (const Surface *surface = surface_at(bsdf, si)) {
             Point2f v  = sampler.next_2d();
-            auto drawn = surface->draw_incident(si, spread(v.x()), spread(v.y()));
+            auto both  = Surface::Events::ReflectionAndFluorescence;
+            auto drawn = surface->draw_incident(both, si, spread(v.x()), spread(v.y()));
             walk.ray.wavelengths = drawn.incident_nm;
             weight               = drawn.weight;
         }
@@ -178,18 +176,18 @@ private:
         return dr::any(walk.throughput != 0.f);
     }
 
-    /// Ends paths that carry little, at random and without bias, once they are `rr_depth` long.
+    /// Russian roulette, from `rr_depth` on; returns whether the path continues.
     bool survives(Sampler &sampler, Walk &walk) const {
         if (walk.depth < m_rr_depth)
             return true;
-        float carried     = dr::max(walk.throughput) * walk.eta * walk.eta;
-        float probability = std::min(carried, GREATEST_SURVIVAL);
+        float greatest    = dr::max(walk.throughput) * walk.eta * walk.eta;
+        float probability = std::min(greatest, GREATEST_SURVIVAL);
         walk.throughput /= probability;
         return sampler.next_1d() < probability;
     }
 
-    /// One random number for each wavelength, a quarter apart: each is uniform, and together they
-    /// leave no part of the choice unseen, which is less noise than four that know nothing of another.
+    /// One random number per wavelength, a quarter apart: each is uniform, and together they are
+    /// stratified, which is less noisy than four independent numbers.
     static Wavelength spread(float u) {
         Wavelength numbers = dr::arange<Wavelength>() / float(Wavelength::Size) + u;
         return numbers - dr::floor(numbers);
@@ -201,7 +199,7 @@ private:
         return 1.f / (1.f + ratio * ratio);
     }
 
-    /// Notes the fluorescent surfaces of a scene's shapes, and warns of those it cannot reach.
+    /// Stores the fluorescent surfaces of a scene's shapes, and warns of those it cannot access.
     void find_fluorescence(const Scene &scene) {
         m_sides.clear();
         for (const auto &shape : scene.shapes()) {
@@ -216,10 +214,10 @@ private:
         }
     }
 
-    /// The fluorescent surface that the path met, if it is one.
+    /// The surface that the path met, if it is fluorescent; otherwise null.
     const Surface *surface_at(const BSDF *bsdf, const SurfaceInteraction3f &si) const {
         auto found = m_sides.find(bsdf);
-        // Shapes in groups are not among the scene's, and `sample` can be called without `render`.
+        // Shapes in groups are not among the scene's, and `sample` may be called without `render`.
         Sides sides = found == m_sides.end() ? Sides(bsdf) : found->second;
         return sides.met_at(Frame3f::cos_theta(si.wi));
     }

@@ -1,4 +1,4 @@
-/// Which variants of Mitsuba a plugin works in, and one clear line in the others.
+/// Registration of plugins in the variants of Mitsuba that they support, and a message in the others.
 
 #pragma once
 
@@ -10,9 +10,13 @@
 #include <mitsuba/core/object.h>
 #include <mitsuba/core/properties.h>
 
+#if defined(__x86_64__) && !defined(__AVX2__)
+#  error "compile with -march=haswell: Mitsuba's wheel passes packets of numbers in AVX registers"
+#endif
+
 namespace upglow_mitsuba {
 
-/// A variant that a plugin works in, and what makes the plugin there.
+/// A variant that a plugin supports, and the function that makes the plugin there.
 struct Variant {
     std::string_view name;
     mitsuba::PluginInstantiateFn instantiate;
@@ -26,7 +30,7 @@ constexpr size_t variant_count() {
     return count;
 }
 
-/// Name of the variant that stands at `index` in Mitsuba's own list.
+/// Name of the variant at `index` in Mitsuba's list.
 constexpr std::string_view variant_name(size_t index) {
     std::string_view list(MI_VARIANTS);
     for (; index > 0; --index)
@@ -39,14 +43,14 @@ mitsuba::ref<mitsuba::Object> instantiate(void *, const mitsuba::Properties &pro
     return new Plugin(props);
 }
 
-/// What a plugin answers where it does not work. `Expected::text` says where it does.
+/// Throws the message of a variant that a plugin does not support. `Expected::text` names the others.
 template <typename Expected, size_t Index>
 mitsuba::ref<mitsuba::Object> refuse(void *, const mitsuba::Properties &) {
     throw std::runtime_error("the native plugin does not work in the variant " +
                              std::string(variant_name(Index)) + ", expected " + Expected::text);
 }
 
-/// Enters a plugin in all variants: those that it works in, and the rest, where it refuses.
+/// Registers a plugin in the variants that it supports, and `refuse` in the others.
 template <typename Expected, size_t Count, size_t... Index>
 void enter(std::string_view name, mitsuba::PluginRegisterFn plugin, mitsuba::ObjectType type,
            const Variant (&works)[Count], std::index_sequence<Index...>) {

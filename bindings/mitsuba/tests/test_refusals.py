@@ -1,4 +1,4 @@
-"""What does not work is refused in one clear line, as Mitsuba's own exception."""
+"""Invalid parameters and variants raise Mitsuba's own exception with a clear message."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def test_colors_that_were_upsampled_are_refused(cube_file: str) -> None:
         0.5,
     ]:
         text = refusal({"type": "upglow", "cube": cube_file, "color": color})
-        assert '"color" is a spectrum or no color, expected three numbers' in text
+        assert '"color" is a spectrum or not a color, expected three numbers' in text
 
 
 @pytest.mark.usefixtures("plugins")
