@@ -5,7 +5,7 @@ use std::process::{Command, Stdio};
 
 use crate::llvm;
 use crate::python;
-use crate::step::{Step, StepError, finish, output_of, release_bin_dir};
+use crate::step::{Step, StepError, cargo, finish, output_of, release_bin_dir};
 
 /// Where the package lies.
 const PACKAGE: &str = "bindings/python";
@@ -30,7 +30,7 @@ fn check(root: &Path) -> Result<(), StepError> {
 }
 
 /// Builds the wheel into the environment of tests, which has all that `requirements-test.txt` lists.
-/// Nothing is fetched. Returns the environment's interpreter.
+/// Returns the environment's interpreter.
 pub(crate) fn installed(root: &Path) -> Result<PathBuf, StepError> {
     let interpreter = python::prepare(root)?;
     match python::prepare_with_mitsuba(root) {
@@ -38,6 +38,8 @@ pub(crate) fn installed(root: &Path) -> Result<PathBuf, StepError> {
         Ok(_) | Err(StepError::Skipped(_)) => {}
         Err(error) => return Err(error),
     }
+    // maturin asks for the metadata of every platform, and with it for crates that no build fetched.
+    finish(cargo(root, "fetch --locked"))?;
     finish(install(root, &interpreter))?;
     Ok(interpreter)
 }
