@@ -6,7 +6,7 @@ each of them is kept, or replaced by a shorter one from which the surface re-rad
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any
 
 from ._host import dr, is_scalar, mi, ratio
@@ -86,19 +86,17 @@ def _depth(props: Any, name: str, default: int, least: int) -> int:
 
 
 def _loop(walk: _Walk, state: _State, max_depth: int) -> _State:
-    names = [field.name for field in fields(state)]
+    def body(state: _State, sampler: Any) -> tuple[_State, Any]:
+        return walk.step(state), sampler
 
-    def body(*values: Any) -> tuple[Any, ...]:
-        after = walk.step(_State(*values[:-1]))
-        return (*(getattr(after, name) for name in names), values[-1])
-
-    values = (*(getattr(state, name) for name in names), walk.sampler)
-    limit = max_depth if max_depth < _ENDLESS else None
-    is_going = names.index("active")
-    done = dr.while_loop(
-        values, lambda *v: v[is_going], body, label="upglow_path", max_iterations=limit
+    done: tuple[_State, Any] = dr.while_loop(
+        (state, walk.sampler),
+        lambda state, _: state.active,
+        body,
+        label="upglow_path",
+        max_iterations=max_depth if max_depth < _ENDLESS else None,
     )
-    return _State(*done[:-1])
+    return done[0]
 
 
 @dataclass

@@ -36,10 +36,9 @@ class ScalarCube:
     def fluorescence(self, lamps: Lamps | None = None) -> Fluorescence:
         """As `JitCube.fluorescence`. Half of the draws follow the lamps, if there are any."""
 
-        def drawn(color: Any, out_nm: Any, choice: Any, u: Any, active: Any = True) -> Any:
-            return self._drawn(lamps, _rgb(color), np.array(list(out_nm)), choice, u)
-
-        return drawn
+        return lambda color, out_nm, choice, u, active=True: self._drawn(
+            lamps, _rgb(color), np.array(list(out_nm)), choice, u
+        )
 
     def _drawn(self, lamps: Lamps | None, rgb: Any, known: Any, choice: Any, u: Any) -> Any:
         steps = np.arange(len(known)) / len(known)
