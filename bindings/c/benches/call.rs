@@ -1,4 +1,4 @@
-//! How long does a call through the C ABI take?
+//! The time of calls through the C ABI.
 //!
 //! Functions are called by pointers that the compiler cannot see through, as a C program calls them.
 //! Times are for [`CALLS`] calls: "item/s" is calls per second.
@@ -19,7 +19,7 @@ fn main() {
     divan::main();
 }
 
-/// Enough that the clock is no part of it.
+/// Enough calls that the cost of the clock is negligible.
 const CALLS: usize = 4096;
 
 const RESOLUTION: usize = 32;
@@ -28,7 +28,7 @@ const RESOLUTION: usize = 32;
 #[derive(Clone, Copy, Debug)]
 enum Kind {
     Passive,
-    /// Every node has dyes of its own choice: the most expensive cube there can be.
+    /// Every node has its own dyes: the most expensive case.
     Dyes,
 }
 
@@ -108,7 +108,7 @@ fn look_up(bencher: Bencher, kind: Kind) {
     });
 }
 
-/// Colors that are looked up at once: their materials fit into a core's own cache.
+/// Colors per call: their materials fit into the cache of one core.
 const BATCH: usize = 256;
 
 #[divan::bench(args = KINDS)]
@@ -126,7 +126,7 @@ fn look_up_many(bencher: Bencher, kind: Kind) {
     });
 }
 
-/// The same, one by one.
+/// The same, one at a time.
 #[divan::bench(args = KINDS)]
 fn look_up_into_an_array(bencher: Bencher, kind: Kind) {
     let (cube, colors) = (handle(kind), colors());

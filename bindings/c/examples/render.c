@@ -8,12 +8,12 @@
 
 #include <upglow.h>
 
-/* Wavelengths of a hero and of those that accompany it, equally far apart around the spectrum. */
+/* Hero wavelength sampling: the hero and the others are equally spaced over the spectrum. */
 #define WAVELENGTHS 8
 static const float FIRST_NM = 360.0f;
 static const float LAST_NM = 760.0f;
 
-/* Ends the program with the reason for which a call failed. */
+/* Ends the program with the reason of a failure. */
 static void check(UpglowStatus status) {
     if (status != UPGLOW_STATUS_OK) {
         fprintf(stderr, "render: %s (%s)\n", upglow_message(), upglow_status_name(status));

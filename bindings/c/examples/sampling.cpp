@@ -1,9 +1,9 @@
-// Wavelengths drawn from a material, both ways, and what the draws converge to.
+// Incident and outgoing wavelengths drawn from a material, and the integrals that they estimate.
 //
 //     sampling CUBE R G B
 //
-// A path from the light draws the wavelength that leaves, a path from the camera the one that came
-// in. Each estimate is compared with a sum over wavelengths; the program fails if they differ.
+// A path from the light draws the wavelength that leaves, a path from the camera the incident one.
+// Each estimate is compared with a sum over wavelengths; the program fails if they differ.
 
 #include <algorithm>
 #include <cmath>
@@ -33,7 +33,7 @@ struct Destroy {
 };
 using Cube = std::unique_ptr<UpglowCube, Destroy>;
 
-// From memory, as a program does whose assets lie in an archive.
+// From memory, as a program does whose assets are in an archive.
 Cube load(const char *path) {
     std::ifstream file(path, std::ios::binary);
     const std::vector<char> bytes{std::istreambuf_iterator<char>(file), {}};
@@ -44,10 +44,10 @@ Cube load(const char *path) {
 }
 
 constexpr int DRAWS = 40000;
-// Standard deviations between an estimate and the truth: a correct sampler fails once in a million
-// programs with other seeds; with this seed, never.
+// Greatest error in standard deviations: a correct sampler exceeds it for one seed in a million, and
+// does not for this one.
 constexpr double DEVIATIONS = 5.0;
-// Each sum takes its function at the middle of steps of this size; the curves bend within 1 nm.
+// Step of the midpoint sums; the curves change their slope every 1 nm.
 constexpr float STEP_NM = 0.5f;
 constexpr double QUADRATURE = 1e-4;
 // Single precision, in a quotient of two numbers that are themselves sums.
@@ -56,7 +56,7 @@ constexpr double SINGLE = 1e-4;
 constexpr float FIRST_NM = 300.0f;
 constexpr float LAST_NM = 830.0f;
 
-// Any light: here one that rises from violet to red.
+// An arbitrary light, which rises from violet to red.
 double light(float lambda_nm) { return (lambda_nm - 200.0) / 600.0; }
 
 float reflectance(const UpglowMaterial &material, float lambda_nm) {
@@ -87,7 +87,7 @@ class Comparison {
         if (holds) {
             return;
         }
-        if (differences_ == 0) { // The first says it all: one fault differs in every draw.
+        if (differences_ == 0) { // The first is enough: an error shows in every draw.
             std::printf("%s DIFFER\n", what);
         }
         differences_ += 1;
@@ -103,7 +103,7 @@ bool close(double found, double expected) {
     return std::abs(found - expected) <= SINGLE * std::abs(expected);
 }
 
-// Light that comes in at one wavelength and leaves in a band.
+// Light that is incident at one wavelength and leaves in a band.
 void from_the_light(const UpglowMaterial &material, float in_nm, Comparison &comparison) {
     constexpr float BAND_NM[2] = {500.0f, 600.0f};
     std::mt19937 random(1);
@@ -138,7 +138,7 @@ void from_the_light(const UpglowMaterial &material, float in_nm, Comparison &com
     comparison.compare("light-elastic", kept / DRAWS, probability, 1.0);
 }
 
-// What leaves at one wavelength of all the light.
+// Light that leaves at one wavelength, integrated over incident wavelengths.
 void from_the_camera(const UpglowMaterial &material, float out_nm, Comparison &comparison) {
     std::mt19937 random(2);
     std::uniform_real_distribution<float> unit(0.0f, 1.0f);

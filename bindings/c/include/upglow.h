@@ -9,18 +9,18 @@
 
 // upglow: materials for any RGB color, reflectance and fluorescence, looked up and evaluated.
 //
-// Load a cube once; look up colors into materials, which live in your memory; ask materials for
-// reflectance, re-radiation and samples at wavelengths. bindings/c/README.md is the guide.
+// Load a cube once; look up colors into materials, which live in your memory; evaluate reflectance,
+// re-radiation and samples of materials. bindings/c/README.md is the guide.
 //
 // Units: wavelengths are in nm, densities in 1/nm, colors linear. The rest has no unit.
-// Failure: functions return UpglowStatus and write their answer to the place that a pointer names,
-//     or leave it untouched on failure; upglow_message() then says why. No input ends the program.
-// Memory: upglow_cube_open, upglow_cube_from_memory, upglow_colors_create and
-//     upglow_colors_create_sampled allocate, and the destroy functions free. Nothing else does either.
-// Threads: cubes, colors and materials never change once they are made, and threads may share them.
-//     Destroying one while another thread uses it, or writing a material while another reads it, is
-//     the caller's to prevent. Messages are each thread's own.
-// Pointers: null and misaligned ones are refused. Others must point to what the function says.
+// Failure: functions return UpglowStatus and write their result to the memory that a pointer names.
+//     On failure they do not write, and upglow_message() has the reason. No input crashes the program.
+// Memory: only upglow_cube_open, upglow_cube_from_memory, upglow_colors_create and
+//     upglow_colors_create_sampled allocate, and only the destroy functions free.
+// Threads: cubes, colors and materials are immutable, and threads may share them. The caller must not
+//     destroy one while another thread uses it, nor write a material while another thread reads it.
+//     Each thread has its own message.
+// Pointers: null and misaligned ones are refused. Others must point to what the function requires.
 
 #if defined(_MSC_VER)
 #define UPGLOW_ALIGNED(n) __declspec(align(n))

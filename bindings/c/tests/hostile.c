@@ -1,5 +1,4 @@
-/* What a careless or hostile caller does, and what it must get: a status, a message, and outputs
- * that nobody touched.
+/* Invalid calls, each of which must return a status and a message, and leave its outputs unchanged.
  *
  *     hostile CUBE
  */
@@ -111,7 +110,7 @@ static void damaged_files(const char *path) {
     REFUSED(upglow_cube_from_memory((const uint8_t *)"SPEC\0\0\0\0", 8, &cube), refused);
     REFUSED(upglow_cube_from_memory(bytes, SIZE_MAX, &cube), UPGLOW_STATUS_INVALID_ARGUMENT);
     for (size_t cut = 0; bytes != NULL && cut < length; cut += length / 97 + 1) {
-        /* A copy of that size, so that a reader past its end is caught. */
+        /* A copy of that size, so that valgrind finds reads past its end. */
         uint8_t *part = malloc(cut + 1);
         memcpy(part, bytes, cut);
         REFUSED(upglow_cube_from_memory(part, cut, &cube), refused);

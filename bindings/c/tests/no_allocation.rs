@@ -1,4 +1,4 @@
-//! Once a cube is loaded, nothing allocates: neither answers nor failures.
+//! Once a cube is loaded, no function allocates, whether it succeeds or fails.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -10,7 +10,7 @@ use upglow::{Cube, DyeModel, DyeOptions, DyeSet, Edge, FitRecord, Fluorescence, 
 use upglow_c::*;
 use upglow_color::Contract;
 
-/// The system's allocator, counted for each thread.
+/// The system's allocator, which counts allocations per thread.
 struct Counted;
 
 thread_local! {

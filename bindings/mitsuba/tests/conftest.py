@@ -37,13 +37,13 @@ def plugins() -> Path:
 
 @pytest.fixture
 def scalar(plugins: Path) -> None:
-    """The variant in which each call reaches the library."""
+    """The variant in which each evaluation calls the library."""
     mi.set_variant("scalar_spectral")
 
 
 @pytest.fixture
 def traced(plugins: Path) -> None:
-    """The variant that traces: a libLLVM is needed, and one that is too old ends the process."""
+    """The variant that traces: it needs a libLLVM, and one that is too old aborts the process."""
     if "DRJIT_LIBLLVM_PATH" not in os.environ:
         pytest.skip("DRJIT_LIBLLVM_PATH names no libLLVM 16 or later")
     mi.set_variant("llvm_ad_spectral")

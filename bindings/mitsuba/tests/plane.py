@@ -10,22 +10,22 @@ import upglow
 from numpy.typing import NDArray
 
 NM = np.arange(300.0, 831.0)
-"""Where a cube knows spectra, nm."""
+"""Wavelengths of a cube's tables, nm."""
 
 
 def observer() -> NDArray[np.float64]:
-    """Mitsuba's observer at `NM`, such that a sum over power is what its films hold."""
+    """Mitsuba's observer at `NM`, scaled so that a sum over power is the film's XYZ."""
     samples = [mi.cie1931_xyz(float(nm)) for nm in NM]
     return np.array(samples).reshape(-1, 3) * mi.MI_CIE_Y_NORMALIZATION
 
 
 def normalized(light: upglow.Illuminant) -> NDArray[np.float64]:
-    """A light's power at `NM`, such that a white plane under it is Y = 1."""
+    """A light's power at `NM`, scaled so that a white plane under it has Y = 1."""
     return light.power / (light.power @ observer()[:, 1])
 
 
 def sky(power: NDArray[np.float64]) -> dict[str, Any]:
-    """Constant light from all sides, at all wavelengths that a cube knows."""
+    """Constant light from all directions, at all wavelengths of a cube's tables."""
     values = ",".join(f"{value:.9g}" for value in power)
     ends = {"wavelength_min": NM[0], "wavelength_max": NM[-1]}
     spectrum = {"type": "regular", "values": values} | ends
@@ -33,7 +33,7 @@ def sky(power: NDArray[np.float64]) -> dict[str, Any]:
 
 
 def film(size: int) -> dict[str, Any]:
-    """XYZ in single precision, each pixel by itself."""
+    """A film of XYZ in single precision, without a filter between pixels."""
     return {
         "type": "hdrfilm",
         "width": size,

@@ -15,10 +15,10 @@ import pytest
 from numpy.typing import NDArray
 
 RESOLUTION = 64
-"""That of the table that Mitsuba brings, so that neither has more nodes."""
+"""That of Mitsuba's own table, so that both have the same number of nodes."""
 
 COLORS = 400
-"""Random ones, of all brightness and saturation."""
+"""Number of random colors, of all brightnesses and saturations."""
 
 OTHER_SUMS = 1.25
 """Each table is exact at its nodes by the sums that it was fitted to: ours by 5 nm, Mitsuba's over
@@ -36,7 +36,7 @@ def table(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("table")
     cube, output = folder / "srgb.safetensors", folder / "data" / "srgb.coeff"
     output.parent.mkdir()
-    # A table is fitted anew, of the cube only its RGB counts. Mitsuba's has no limit of slopes.
+    # The export fits a new table for the cube's RGB space. Mitsuba's table has no slope limit.
     fitted = ["--space", "srgb", "--model", "reflectance", "--slope-max-per-nm", "none"]
     build = [program, "build", "-q", *fitted, "--resolution", "2", "--output", cube]
     subprocess.run(build, check=True, capture_output=True)
@@ -46,7 +46,7 @@ def table(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def upsampled(folder: str | Path, colors: NDArray[Any], tmp_path: Path) -> list[dict[str, Any]]:
-    """What a new Mitsuba makes of the colors with the table in a folder, or with its own."""
+    """Mitsuba's upsampling of colors in a new process, with the table in a folder or its own."""
     listed = tmp_path / "colors.txt"
     np.savetxt(listed, colors)
     program = [sys.executable, Path(__file__).with_name("upsampling.py"), folder, listed]
@@ -71,7 +71,7 @@ def test_mitsuba_reads_our_table_in_place_of_its_own(table: Path, tmp_path: Path
     color, coefficients = node(table / "data" / "srgb.coeff")
     (ours,) = upsampled(table, color[None], tmp_path)
     (its,) = upsampled("-", color[None], tmp_path)
-    # At a node interpolation rounds and does no more. The two tables differ in the third digit.
+    # At a node, interpolation only rounds. The two tables differ in the third digit.
     np.testing.assert_allclose(ours["coefficients"], coefficients, rtol=1e-5)
     assert not np.allclose(its["coefficients"], coefficients, rtol=1e-4)
 
@@ -88,5 +88,5 @@ def test_colors_come_back_as_well_as_from_mitsubas_own_table(table: Path, tmp_pa
             print(f"{name}, by {sums}: linear sRGB off by {mean:.2e}, at most {greatest:.2e}")
     assert (off["ours", "1 nm"] <= OTHER_SUMS * off["its own", "1 nm"]).all(), off
     assert (off["ours", "5 nm"] <= OTHER_SUMS * off["its own", "5 nm"]).all(), off
-    # By the sums that ours was fitted to, it is the better one.
+    # For the sums that ours was fitted to, it has the smaller error.
     assert off["ours", "5 nm"][0] < off["its own", "5 nm"][0], off

@@ -1,4 +1,4 @@
-"""The integrator `upglow_path`: films agree with the colors that the cube says."""
+"""The integrator `upglow_path`: films agree with the cube's colors."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ GREEN, MAGENTA, GRAY = (0.05, 0.9, 0.1), (0.9, 0.05, 0.8), (0.4, 0.4, 0.4)
 COLORS = [GREEN, MAGENTA, GRAY]
 
 ERRORS = 4
-"""Standard errors that a mean may be off: one run in 16,000 is further off by chance, and the seeds
-are fixed, so that what passes once always does."""
+"""Greatest error of a mean in standard errors: one run in 16,000 exceeds it by chance. The seeds are
+fixed, so that results are reproducible."""
 
 OBSERVER = 4e-4
-"""Mitsuba draws straight lines between an observer's values by 5 nm: this much at most."""
+"""Greatest error of Mitsuba's linear interpolation between an observer's values by 5 nm."""
 
 LAMP = upglow.Illuminant.line(385, 15)
 
 
 def lamp_power() -> NDArray[np.float64]:
-    """The lamp with as much power as D65 when that makes a white plane Y = 1."""
+    """The lamp with the power that D65 has when a white plane under it has Y = 1."""
     return LAMP.power * normalized(upglow.Illuminant("D65")).sum() / LAMP.power.sum()
 
 
@@ -37,7 +37,7 @@ def surface(cube_file: str, color: Any) -> dict[str, Any]:
     return {"type": "upglow", "cube": cube_file, "color": list(color)}
 
 
-def assert_shows(samples: NDArray[np.float64], expected: NDArray[Any]) -> None:
+def assert_mean(samples: NDArray[np.float64], expected: NDArray[Any]) -> None:
     mean, error = mean_and_error(samples)
     assert (abs(mean - expected) <= ERRORS * error + OBSERVER).all(), (mean, error, expected)
 
@@ -48,7 +48,7 @@ def test_under_daylight_a_plane_has_the_cubes_color(
 ) -> None:
     light = sky(normalized(upglow.Illuminant("D65")))
     found = pixels(scene(surface(cube_file, color), light, {"type": "upglow_path"}))
-    assert_shows(found, cube.xyz(color, step_nm=1))
+    assert_mean(found, cube.xyz(color, step_nm=1))
 
 
 @pytest.mark.parametrize("color", COLORS)
@@ -57,32 +57,33 @@ def test_under_an_ultraviolet_lamp_a_plane_glows_as_the_cube_says(
 ) -> None:
     light = sky(lamp_power())
     found = pixels(scene(surface(cube_file, color), light, {"type": "upglow_path"}), spp=128)
-    assert_shows(found, cube.xyz(color, light=LAMP, scale="power", step_nm=1))
+    assert_mean(found, cube.xyz(color, light=LAMP, scale="power", step_nm=1))
 
 
 def test_light_from_one_direction_is_shifted_as_well(cube: upglow.Cube, cube_file: str) -> None:
-    """What shines from one direction is only sampled; the sky of other tests is also run into."""
+    """Such light is found by emitter sampling only; rays also hit the sky of other tests."""
     spectrum = sky(normalized(upglow.Illuminant("D65")))["radiance"]
     light = {"type": "directional", "direction": [0, 0, -1], "irradiance": spectrum}
     found = pixels(scene(surface(cube_file, GREEN), light, {"type": "upglow_path"}))
-    assert_shows(found * np.pi, cube.xyz(GREEN, step_nm=1))
+    assert_mean(found * np.pi, cube.xyz(GREEN, step_nm=1))
 
 
-def test_mitsubas_own_integrator_shows_the_reflected_part_alone(
+def test_mitsubas_own_integrator_renders_the_reflected_part_alone(
     cube: upglow.Cube, cube_file: str
 ) -> None:
     power = normalized(upglow.Illuminant("D65"))
     elastic = (cube.reflectance(GREEN, NM) * power) @ observer()
     assert abs(elastic - cube.xyz(GREEN)).max() > 0.05, "the color does not fluoresce"
     found = pixels(scene(surface(cube_file, GREEN), sky(power), {"type": "path"}))
-    assert_shows(found, elastic)
+    assert_mean(found, elastic)
 
 
 def test_inside_a_glowing_box_each_bounce_shifts_what_the_last_one_left(
     cube: upglow.Cube, cube_file: str
 ) -> None:
-    """The series is known: from all sides comes what the walls send out, and that once, twice and
-    three times through their material. Inside a sphere Mitsuba's own `path` is 2 % too bright."""
+    """The series is known: the emission of the walls, after none, one, two and three bounces.
+
+    It is a box because inside a sphere Mitsuba's own `path` is 2 % too bright."""
     moved = cube.reradiation_matrix(GREEN, upglow.FINE_NM)
     light, total = normalized(upglow.Illuminant("D65")), np.zeros(3)
     emitter = {"type": "area", "radiance": sky(light)["radiance"]}
@@ -99,7 +100,7 @@ def test_inside_a_glowing_box_each_bounce_shifts_what_the_last_one_left(
     sensor = {"type": "perspective", "to_world": to_world, "film": film(32)}
     integrator = {"type": "upglow_path", "max_depth": 4, "rr_depth": 2}
     made = {"type": "scene", "integrator": integrator, "sensor": sensor, "box": box}
-    assert_shows(pixels(mi.load_dict(made), spp=128), total)
+    assert_mean(pixels(mi.load_dict(made), spp=128), total)
 
 
 @pytest.mark.parametrize("hidden", [False, True])
@@ -119,7 +120,7 @@ def test_where_nothing_fluoresces_it_is_mitsubas_own_path_tracer(hidden: bool) -
     for name in ["path", "upglow_path"]:
         box["integrator"] = {"type": name, "hide_emitters": hidden, "max_depth": 8, "rr_depth": 3}
         made = mi.load_dict(box)
-        # Pixels are unlike each other: the error is that of pictures.
+        # Pixels have different colors: the error is that between pictures.
         pictures = [np.array(mi.render(made, spp=32, seed=seed)) for seed in range(24)]
         means[name] = mean_and_error(np.array([p.mean(axis=(0, 1)) for p in pictures], dtype=float))
     (one, error), (other, other_error) = means.values()
@@ -138,7 +139,7 @@ def test_both_sides_of_a_twosided_plane_glow(
     expected = cube.xyz(GREEN if tilt == 0 else MAGENTA, step_nm=1)
     light = sky(normalized(upglow.Illuminant("D65")))
     made = scene(sides, light, {"type": "upglow_path"}, tilt=tilt)
-    assert_shows(pixels(made), expected)
+    assert_mean(pixels(made), expected)
 
 
 def test_fluorescence_behind_another_wrapper_is_warned_of(
@@ -170,7 +171,7 @@ def test_a_texture_of_one_color_is_that_color(cube_file: str) -> None:
 
 
 def test_the_same_seed_gives_the_same_picture_for_any_number_of_threads(cube_file: str) -> None:
-    # Unless it is told how, Mitsuba divides a picture by the number of threads and seeds its parts.
+    # By default Mitsuba divides a picture by the number of threads, and seeds its parts.
     integrator = {"type": "upglow_path", "block_size": 8}
     light = sky(normalized(upglow.Illuminant("D65")))
     made = scene(surface(cube_file, MAGENTA), light, integrator)

@@ -1,4 +1,4 @@
-"""How fast arrays of colors are answered: ``python benches/arrays.py``.
+"""Colors per second of methods on arrays: ``python benches/arrays.py``.
 
 Prints millions of colors a second, the best of some runs, on all cores and on one. Colors are random,
 so that every look-up is somewhere else; the cube is the default one.
@@ -31,7 +31,7 @@ def best(work: Callable[[], object]) -> float:
 
 
 def main() -> None:
-    """Prints a row for each question."""
+    """Prints a row for each method."""
     parser = argparse.ArgumentParser(description="Speed of upglow's array calls.")
     parser.add_argument("--colors", type=int, default=4_000_000, help="colors in the array")
     parser.add_argument("--resolution", type=int, default=32, help="nodes along an axis")

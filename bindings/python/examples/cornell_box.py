@@ -27,18 +27,18 @@ MAGENTA, MINT = [0.94, 0.2, 0.46], [0.4, 1.0, 0.8]
 WHITE = {"type": "diffuse", "reflectance": {"type": "uniform", "value": 0.7}}
 
 LAMP = upglow.Illuminant.line(365.0, 12.0)
-# Share of the lamp scene's power that is daylight: without it, all but the glow is black.
+# Share of daylight in the power of the lamp scene: without it, only fluorescence is visible.
 DAYLIGHT = 0.01
 # Radiance of the lamp above the boxes, in that of the perfect diffuser under D65.
 RADIANCE = {"daylight": 14.0, "lamp": 110.0}
 # Factors from luminance to the display, one for each light: its white is 1.
 EXPOSURE = {"daylight": 1.3, "lamp": 0.32}
-# Factors of the samples: glow comes from few of the wavelengths drawn, and is noisier.
+# Factors of the samples: fluorescence reaches few of the wavelengths drawn, and is noisier.
 PATIENCE = {"daylight": 1, "lamp": 2}
 
 DEPTH, SEED = 9, 1
 FLAT_SIZE, FLAT_SPP = 64, 256
-# Samples a pixel that are drawn at once: they are all in memory.
+# Samples per pixel that are drawn at once: they are all in memory.
 PASS_SPP = 64
 
 Color = list[float]
@@ -48,7 +48,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Upsampling:
-    """One of the compared ways to make a surface of a color."""
+    """One of the compared ways to get a material from a color."""
 
     title: str
     cube: upglow.Cube | None
@@ -103,7 +103,7 @@ def box(upsampling: Upsampling, lamp: str, size: int) -> Scene:
 
 
 def flat(upsampling: Upsampling, lamp: str) -> Scene:
-    """The magenta wall by itself, under a light from everywhere."""
+    """The magenta wall alone, under light from all directions."""
     where = mi.ScalarTransform4f().scale(9)
     return {
         "type": "scene",
@@ -132,7 +132,7 @@ def camera(origin: Color, fov: float, size: int, pixel: str) -> Scene:
 
 
 def render(scene: Scene, spp: int) -> tuple[Array, float]:
-    """X, Y, Z of each pixel; and the best pass's time on one core, µs for a sample."""
+    """X, Y, Z of each pixel; and the best pass's time on one core, µs per sample."""
     loaded, total, left, seed = mi.load_dict(scene), np.zeros(()), spp, SEED
     costs = []
     while left > 0:
@@ -162,7 +162,7 @@ def difference(contract: upglow.Contract, xyz: Array, color: Color) -> float:
 
 
 def measured(upsampling: Upsampling) -> list[str]:
-    """What the magenta wall is under each light, in words for below the pictures."""
+    """Captions: the color of the magenta wall under each light."""
     told = []
     for lamp in RADIANCE:
         xyz = render(flat(upsampling, lamp), FLAT_SPP)[0].mean(axis=(0, 1))
@@ -217,7 +217,7 @@ def arguments() -> argparse.Namespace:
     for name, least in (("spp", 1), ("size", 1), ("resolution", 2)):
         if (found := getattr(options, name)) < least:
             parser.error(f"--{name} is {found}, expected {least} or more")
-    # Said now, and not after minutes of rendering.
+    # Checked now, and not after minutes of rendering.
     if not options.out.parent.is_dir():
         parser.error(f"--out is {options.out}, expected a path in a folder that is there")
     return options

@@ -14,7 +14,7 @@ summary = cube.summary()
 print(cube)
 print(f"{summary.exact} of {summary.nodes} nodes show their color exactly")
 
-# %% A brown needs no fluorescence. A mint does, and is shown with it. The dyes are too weak for a
+# %% A brown needs no fluorescence. A mint does, and the cube matches it. The dyes are too weak for a
 # strong magenta, and no material at all can reproduce the green of the space.
 mint, brown = [0.4, 1.0, 0.8], [0.35, 0.2, 0.1]
 colors = {"brown": brown, "mint": mint, "magenta": [0.9, 0.1, 0.8], "green": [0.0, 1.0, 0.0]}
@@ -23,7 +23,7 @@ for name, rgb in colors.items():
     kind = upglow.Kind(int(check.kind)).name.lower().replace("_", " ")
     print(f"{name}: {kind}, ΔE00 {check.de2000:.3f}")
 
-# %% Spectra: what is reflected at its own wavelength, and what comes back in all.
+# %% Spectra: light reflected at the same wavelength, and light that leaves at any wavelength.
 nm = np.arange(400.0, 701.0, 25.0)
 reflectance, albedo = cube.reflectance(mint, nm), cube.albedo(mint, nm)
 for at, r, a in zip(nm, reflectance, albedo, strict=True):
@@ -36,14 +36,14 @@ column = matrix[:, list(bands).index(440)]
 print("of light at 440 nm:", ", ".join(f"{b} nm {v:.3f}" for b, v in zip(bands, column) if v > 1e-3))
 assert np.all(matrix.sum(axis=0) <= 1.0 + 1e-9)
 
-# %% Color under other lights. Under an ultraviolet lamp only fluorescence shines.
+# %% Color under other lights. Under an ultraviolet lamp only fluorescence is bright.
 lamp = upglow.Illuminant.line(365.0, 12.0)
 for light in ("D65", "A", "E"):
     print(f"{light:>3}: RGB {np.round(cube.rgb_under(mint, light), 3)}")
 white, shining = cube.xyz([[1.0, 1.0, 1.0], mint], light=lamp, scale="power")
 print(f"under the lamp: white has Y = {white[1]:.5f}, mint Y = {shining[1]:.5f}")
 
-# %% Sampling, as a path from the camera does it: the light at 520 nm that came from anywhere.
+# %% Sampling, as a path from the camera does it: light at 520 nm due to all incident wavelengths.
 rng = np.random.default_rng(1)
 out_nm, power = 520.0, contract.illuminant.power
 light_at = lambda at: np.interp(at, upglow.FINE_NM, power, left=0.0, right=0.0)  # noqa: E731
@@ -67,14 +67,14 @@ elastic = cube.reflectance(mint, out_nm) * light_at(out_nm)
 print(f"by MIS: {elastic + fluorescent:.3f}, with the elastic part taken as it is")
 assert abs((elastic + fluorescent) / exact - 1.0) < 0.01
 
-# %% A picture: ten thousand texels to spectra, and to one material each.
+# %% A picture: ten thousand texels to spectra, and to one material per texel.
 picture = rng.random((100, 100, 3), dtype=np.float32)
 spectra = cube.reflectance(picture, np.arange(400.0, 701.0, 10.0))
 texels = cube.material(picture)
 fluorescent_texels = int((texels.concentration > 0).sum())
 print(f"spectra {spectra.shape} {spectra.dtype}; {fluorescent_texels} texels fluoresce")
 
-# %% The file is safetensors: any program reads it. It appears whole or not at all.
+# %% The file is safetensors, which any program can read. It is written completely or not at all.
 content = cube.to_bytes()
 assert upglow.Cube.from_bytes(content).to_bytes() == content
 print(f"{len(content) / 1e6:.2f} MB; dyes: {', '.join(cube.dye_names)}")

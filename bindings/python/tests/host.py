@@ -17,21 +17,21 @@ import upglow
 
 LLVM, SCALAR = "llvm_ad_spectral", "scalar_spectral"
 
-# LLVM 15 ends the whole process at the first minimum of two numbers: asked in a process of its own.
+# LLVM 15 aborts the process when it compiles the minimum of two numbers: tried in a separate process.
 TRIAL = """
 import drjit, mitsuba
 mitsuba.set_variant("llvm_ad_spectral")
 drjit.eval(drjit.minimum(mitsuba.Float([1.0, 2.0]), mitsuba.Float(1.5)))
 """
 
-# Standard errors that a mean may be off: one in 16 000 is, and seeds are fixed.
+# Greatest error of a mean in standard errors: one in 16 000 exceeds it, and seeds are fixed.
 ERRORS = 4.0
-# Sums over 1 nm where the renderer interpolates curves of its own over 5 nm.
+# Sums over 1 nm against the renderer's interpolation of curves over 5 nm.
 QUADRATURE = 5e-4
 
 
 def candidates() -> Iterator[str | None]:
-    """Where LLVM may be: as the environment says, as the renderer finds it, as Debian has it."""
+    """Where LLVM may be: the environment's, Debian's, or the one that the renderer finds."""
     if "DRJIT_LIBLLVM_PATH" in os.environ:
         yield os.environ["DRJIT_LIBLLVM_PATH"]
         return
@@ -66,7 +66,7 @@ def renderer(variant: str = LLVM) -> Any:
 
 
 def plane(bsdf: dict[str, Any], light: dict[str, Any], **integrator: Any) -> dict[str, Any]:
-    """A plane that fills the picture, under a light from everywhere."""
+    """A plane that fills the picture, under light from all directions."""
     return {
         "type": "scene",
         "integrator": {"type": "upglow_path", "max_depth": 2, **integrator},
@@ -77,7 +77,7 @@ def plane(bsdf: dict[str, Any], light: dict[str, Any], **integrator: Any) -> dic
 
 
 def sensor(origin: list[float], size: int = 16) -> dict[str, Any]:
-    """A camera that looks down to the middle, for XYZ without a filter between pixels."""
+    """A camera that looks down at the center, with a film of XYZ and no filter between pixels."""
     import mitsuba as mi
 
     film = {
@@ -107,7 +107,7 @@ def picture(scene: Any, spp: int = 256, seed: int = 0) -> np.ndarray:
 
 
 def xyz_of(spectrum: np.ndarray) -> np.ndarray:
-    """X, Y, Z as the renderer's films have them, of radiance over ``upglow.FINE_NM``."""
+    """X, Y, Z, as the renderer's films define them, of radiance over ``upglow.FINE_NM``."""
     import mitsuba as mi
 
     if mi.variant().startswith("scalar"):
@@ -123,7 +123,7 @@ def light_of(spectrum: dict[str, Any]) -> np.ndarray:
 
 
 def assert_mean(pixels: np.ndarray, expected: np.ndarray) -> None:
-    """The mean of the pixels is the color, but for noise as large as they show it."""
+    """Asserts that the mean of the pixels is the color, within the noise that they show."""
     error = pixels.std(axis=0, ddof=1) / len(pixels) ** 0.5
     away = np.abs(pixels.mean(axis=0) - expected)
     allowed = ERRORS * error + QUADRATURE * np.abs(expected).max()

@@ -151,7 +151,7 @@ class Reader:
         return np.minimum(1, in_nm / mean_nm)
 
     def reflectance(self, rgb: np.ndarray, nm: np.ndarray) -> np.ndarray:
-        """What a color's material reflects at its own wavelength."""
+        """Reflectance of a color's material."""
         total = np.zeros_like(nm)
         for weight, node in self.corners(rgb):
             absorbed = sum(
@@ -161,7 +161,7 @@ class Reader:
         return total
 
     def reradiation(self, rgb: np.ndarray, in_nm: np.ndarray, out_nm: np.ndarray) -> np.ndarray:
-        """Energy per nm at `out_nm` of what came in at `in_nm`."""
+        """Energy re-radiated per nm at `out_nm`, per unit of energy incident at `in_nm`; 1/nm."""
         total = np.zeros(np.broadcast_shapes(in_nm.shape, out_nm.shape))
         for weight, node in self.corners(rgb):
             for k in self.absorbers(node):

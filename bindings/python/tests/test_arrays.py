@@ -1,4 +1,4 @@
-"""Arrays in, arrays out: shapes, types, what is outside, threads."""
+"""Shapes, types, colors outside the cube, threads."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def test_arguments_broadcast(cube, rng) -> None:
     assert one.nm.shape == (6,)
 
 
-def test_slices_and_other_layouts_are_read_as_they_look(cube, rng) -> None:
+def test_slices_and_other_memory_layouts_give_the_same_results(cube, rng) -> None:
     rgb = rng.random((6, 8, 3))
     assert np.array_equal(cube.xyz(rgb[::2, ::-1]), cube.xyz(rgb)[::2, ::-1])
     planes = np.asfortranarray(rgb)
@@ -57,7 +57,7 @@ def test_slices_and_other_layouts_are_read_as_they_look(cube, rng) -> None:
     assert np.array_equal(cube.xyz([[0, 1, 0], [1, 1, 1]]), cube.xyz([[0.0, 1, 0], [1, 1, 1.0]]))
 
 
-def test_single_precision_answers_what_double_answers(any_cube, rng) -> None:
+def test_single_precision_agrees_with_double(any_cube, rng) -> None:
     single = rng.random((200, 3), dtype=np.float32)
     double, nm = single.astype(np.float64), np.linspace(310.0, 820.0, 23)
     for call in (any_cube.reflectance, any_cube.albedo):
@@ -81,7 +81,7 @@ def test_corners_are_the_nodes_that_are_mixed(cube, rng) -> None:
     assert np.allclose(weights.sum(axis=-1), 1.0)
 
 
-def test_a_node_shows_its_stored_difference(cube: upglow.Cube) -> None:
+def test_the_difference_of_a_node_is_the_stored_one(cube: upglow.Cube) -> None:
     blue, green, red = np.indices((9, 9, 9))
     rgb = np.stack([red, green, blue], axis=-1) / 8
     # The color is rounded to single precision, which near black is a larger difference.
@@ -119,7 +119,7 @@ def test_the_columns_of_stored_numbers_have_names(any_cube: upglow.Cube) -> None
 
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
-def test_what_is_outside_is_refused_by_index_and_value(cube, dtype) -> None:
+def test_colors_outside_are_refused_with_index_and_value(cube, dtype) -> None:
     rgb = np.full((2, 3, 3), 0.5, dtype=dtype)
     rgb[1, 2, 1] = 1.25
     message = r"^rgb\[1, 2\]: green is 1.25, expected 0 to 1, the range of the cube$"
@@ -144,7 +144,7 @@ def test_what_is_outside_is_refused_by_index_and_value(cube, dtype) -> None:
         cube.fit([-1, 0, 0])
 
 
-def test_what_is_outside_may_be_not_a_number_or_clipped(cube) -> None:
+def test_colors_outside_may_give_nan_or_be_clipped(cube) -> None:
     rgb = np.array([[0.5, 0.5, 0.5], [1.5, -0.5, 0.5], [np.nan, 0.0, 0.0]])
     near = [1.0, 0.0, 0.5]
     for call in (
@@ -193,14 +193,14 @@ def test_wrong_arguments_are_refused(cube, call, error, message) -> None:
         call(cube)
 
 
-def test_materials_of_another_cube_are_not_a_number(cube) -> None:
+def test_materials_of_another_cube_give_nan(cube) -> None:
     materials = upglow.build(model=upglow.Dyes(set="wide14"), resolution=4).nodes
     foreign = materials.dye >= 8
     assert foreign.any()
     assert np.array_equal(np.isnan(cube.reflectance(materials, 500.0)), foreign)
 
 
-def test_threads_change_no_bit(cube, rng) -> None:
+def test_results_do_not_depend_on_threads(cube, rng) -> None:
     rgb, nm = rng.random((40_000, 3)), np.linspace(400, 700, 4)
     single, u = rgb.astype(np.float32), rng.random((40_000, 2))
     calls = [
@@ -242,5 +242,5 @@ def test_pythons_lock_is_released_while_rust_works(cube, rng) -> None:
         ticks, longest, last = ticks + 1, max(longest, now - last), now
     worker.join()
     took = time.perf_counter() - start
-    # With the lock held this thread would stand still for all of it.
+    # If the lock were held, this thread would make no progress meanwhile.
     assert ticks > 10 and longest < 0.5 * took, (ticks, longest, took)

@@ -18,7 +18,7 @@ def test_the_cube_does_not_depend_on_the_number_of_threads() -> None:
     assert one == three
 
 
-def test_the_header_says_what_was_asked_for() -> None:
+def test_the_header_has_the_options() -> None:
     cube = upglow.build(
         upglow.Contract(space="rec2020", illuminant="D50", adaptation="none"),
         model=upglow.Analytic(absorption_fwhm_nm=40.0),
@@ -38,14 +38,14 @@ def test_the_header_says_what_was_asked_for() -> None:
     assert upglow.build(resolution=2, slope_max_per_nm=None).header["fit"]["slope_max_per_nm"] is None
 
 
-def test_progress_tells_every_stage_to_its_end() -> None:
+def test_every_stage_reports_progress_to_its_end() -> None:
     told: list[tuple[str, int, int]] = []
     upglow.build(resolution=5, progress=lambda *step: told.append(step))
     assert told[-1] == ("measuring", 125, 125)
     assert all(0 <= done <= total for _, done, total in told)
 
 
-def test_progress_is_told_on_the_thread_that_asked() -> None:
+def test_progress_is_reported_on_the_calling_thread() -> None:
     threads = set()
     upglow.build(resolution=5, progress=lambda *_: threads.add(threading.get_ident()))
     assert threads == {threading.get_ident()}
@@ -53,7 +53,7 @@ def test_progress_is_told_on_the_thread_that_asked() -> None:
 
 def test_a_bar_is_drawn_where_tqdm_is(capsys: pytest.CaptureFixture[str]) -> None:
     with warnings.catch_warnings():
-        # Outside notebooks tqdm.auto regrets that it has no widgets.
+        # Outside notebooks tqdm.auto warns that it has no widgets.
         warnings.simplefilter("ignore")
         upglow.build(resolution=5, progress=True)
     assert "measuring: 100%" in capsys.readouterr().err
@@ -65,7 +65,7 @@ def test_without_tqdm_there_is_no_bar_but_a_cube(monkeypatch, capsys) -> None:
     assert capsys.readouterr().err == ""
 
 
-def test_what_progress_raises_stops_the_build() -> None:
+def test_an_exception_in_progress_stops_the_build() -> None:
     def tired(*_: object) -> None:
         raise RuntimeError("enough")
 
@@ -74,7 +74,7 @@ def test_what_progress_raises_stops_the_build() -> None:
 
 
 def test_ctrl_c_stops_the_build() -> None:
-    # A cube of 128³ takes minutes; the build asks at every 64 nodes.
+    # A cube of 128³ takes minutes; the build checks every 64 nodes.
     soon_s = 20.0
     start = time.monotonic()
     main = threading.main_thread().ident
@@ -87,12 +87,12 @@ def test_ctrl_c_stops_the_build() -> None:
 
 def test_a_fit_is_at_least_as_good_as_a_polished_material(cube: upglow.Cube) -> None:
     rgb = np.array([[0.9, 0.1, 0.8], [0.2, 0.6, 0.3], [0.7, 0.6, 0.2]])
-    # What counts as matched; single precision changes less.
+    # The tolerance for a match; single precision has a smaller error.
     matched = 0.01
     assert np.all(cube.fit(rgb).de2000 <= cube.material(rgb).de2000 + matched)
 
 
-def test_a_fit_is_plain_for_gray_and_knows_colors_brighter_than_white(cube) -> None:
+def test_a_fit_is_flat_for_gray_and_accepts_colors_brighter_than_white(cube) -> None:
     assert cube.fit([0.5, 0.5, 0.5]).concentration == 0
     orange = cube.fit([1.3, 0.4, 0.05])
     assert orange.concentration > 0

@@ -1,4 +1,4 @@
-"""The same colors by colour-science, an implementation that nobody here wrote."""
+"""Comparison with colour-science, an independent implementation."""
 
 from __future__ import annotations
 

@@ -66,13 +66,13 @@ def test_a_light_is_a_name_a_file_or_samples(tmp_path) -> None:
         (lambda: upglow.Illuminant.line(-1e9, 1), "no power between 360 and 830 nm"),
     ],
 )
-def test_what_is_no_contract_is_refused(make, message) -> None:
+def test_an_invalid_contract_is_refused(make, message) -> None:
     with pytest.raises(ValueError) as found:
         make()
     assert str(found.value).startswith(message), found.value
 
 
-def test_what_is_no_spectrum_is_a_type_error() -> None:
+def test_another_type_than_a_spectrum_is_a_type_error() -> None:
     with pytest.raises(TypeError, match="illuminant is int, expected a pair"):
         upglow.Illuminant(7)
     with pytest.raises(FileNotFoundError):

@@ -47,7 +47,7 @@ def test_a_layer_of_nodes_repeats_the_errors_that_the_cube_stores(cube) -> None:
     assert np.array_equal(layer.has_exact_nodes, cube.nodes.de2000[index] <= 0.01)
 
 
-def test_between_exact_nodes_blend_has_no_error_and_the_papers_ways_have(cube) -> None:
+def test_between_exact_nodes_only_blend_has_no_error(cube) -> None:
     blend = figures.layer(cube, 0.55, side=33)
     assert blend.rgb.shape == (33, 33, 3) and blend.axis.shape == (33,)
     red, green = np.meshgrid(blend.axis, blend.axis)
@@ -98,7 +98,7 @@ def test_the_solid_of_reflectances_lies_in_that_of_fluorescence_and_holds_white(
     reach = lambda solid: (solid.xyz * direction).sum(axis=-1)  # noqa: E731
     assert (reach(fluorescent) >= reach(passive) - ROUNDING).all()
     assert (reach(fluorescent) > reach(passive) + 0.01).any()
-    # White is furthest along X + Y + Z, and black the other way.
+    # White is furthest along X + Y + Z, and black in the opposite direction.
     assert np.abs(passive.xyz.max(axis=(0, 1)) - contract.white_xyz).max() < ROUNDING
     assert np.abs(passive.xyz.min(axis=(0, 1))).max() < ROUNDING
     assert abs(passive.lab[..., 0].max() - 100) < 1e-9

@@ -1,4 +1,4 @@
-"""Cubes as files: other programs read them, and the library answers what the format's text says."""
+"""Cubes as files: other programs read them, and results follow the format's documentation."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from safetensors.numpy import load
 
 import upglow
 
-# Both sides compute in double precision from the same stored numbers; the format's text gives the
-# width of a cubic B-spline in eleven digits.
+# Both sides compute in double precision from the same stored numbers; the format's documentation
+# gives the width of a cubic B-spline in eleven digits.
 ROUNDING = 1e-10
 
 
@@ -75,7 +75,7 @@ def test_reradiation_is_what_the_format_says(
 
 
 def test_numpy_alone_finds_the_color_of_a_node() -> None:
-    # Single precision of the answer; the sums are the same, over 5 nm.
+    # The error of single precision; the sums are the same, over 5 nm.
     single = 1e-6
     cube = upglow.build(resolution=4)
     reader = Reader(cube.to_bytes())
@@ -108,7 +108,7 @@ def test_files_and_bytes_round_trip(cube: upglow.Cube, tmp_path) -> None:
         assert copy.to_bytes() == cube.to_bytes()
 
 
-def test_what_cannot_be_read_or_written_is_an_error_of_the_system(cube, tmp_path) -> None:
+def test_a_file_that_cannot_be_read_or_written_is_an_os_error(cube, tmp_path) -> None:
     missing = tmp_path / "no" / "cube.safetensors"
     with pytest.raises(FileNotFoundError) as found:
         upglow.Cube.read(missing)

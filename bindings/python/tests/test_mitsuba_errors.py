@@ -1,4 +1,4 @@
-"""What the plugins say of scenes that they cannot render."""
+"""Messages of the plugins for scenes that they cannot render."""
 
 from __future__ import annotations
 

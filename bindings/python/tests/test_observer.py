@@ -56,7 +56,7 @@ def test_a_cube_matches_its_colors_for_its_observer_and_not_for_another(observer
     light = upglow.Illuminant("D65").power[::5]
     white = light @ observer.matching[::5]
     seen = (spectrum * light) @ observer.matching[::5] / white[1]
-    # A color that the fit calls exact is within 0.01 CIEDE2000.
+    # The fit counts a color as exact within 0.01 CIEDE2000.
     exact = 2e-5
     assert np.abs(seen - cube.contract.xyz_from_rgb @ rgb).max() < exact
     other = (spectrum * light) @ STANDARD.matching[::5] / (light @ STANDARD.matching[::5, 1])
@@ -107,13 +107,13 @@ NM = np.arange(380.0, 781.0, 5.0)
         ),
     ],
 )
-def test_what_is_no_observer_is_refused(make, message) -> None:
+def test_an_invalid_observer_is_refused(make, message) -> None:
     with pytest.raises(ValueError) as found:
         make()
     assert str(found.value).startswith(message), found.value
 
 
-def test_what_is_no_table_is_a_type_error() -> None:
+def test_another_type_than_a_table_is_a_type_error() -> None:
     with pytest.raises(TypeError, match="observer is int, expected a pair .*MultiSpectral"):
         upglow.Observer(7)
     with pytest.raises(FileNotFoundError):

@@ -69,7 +69,7 @@ def test_the_readme_runs(tmp_path, monkeypatch) -> None:
     assert blocks
     for block in blocks:
         with warnings.catch_warnings():
-            # tqdm without widgets says so.
+            # tqdm warns that it has no widgets.
             warnings.simplefilter("ignore")
             exec(compile(block, "README.md", "exec"), {})  # noqa: S102
     assert (tmp_path / "acescg.safetensors").exists()
@@ -104,6 +104,6 @@ def test_the_readme_names_what_there_is() -> None:
 
 
 def check(command: list[str], folder: Path) -> None:
-    """Runs a command in a folder that may be littered."""
+    """Runs a command in a folder in which it may leave files."""
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr

@@ -14,7 +14,7 @@ import upglow
 # The program prints doubles in full; colors come in single precision here.
 ROUNDING = 1e-12
 SINGLE = 1e-6
-# The last is a little beyond what reflectances show.
+# The last is a little beyond the colors of reflectances.
 COLORS = [
     (0.9, 0.1, 0.8),
     (0.5, 0.5, 0.5),
@@ -44,7 +44,7 @@ def test_both_build_the_same_bytes(file: Path) -> None:
 
 
 @pytest.mark.parametrize("rgb", COLORS)
-def test_both_show_the_same_material(program: str, file: Path, rgb) -> None:
+def test_both_find_the_same_material(program: str, file: Path, rgb) -> None:
     cube = upglow.Cube.read(file)
     told = run(program, "color", str(file), *map(str, rgb))
     curves = told["curves"]
@@ -65,7 +65,7 @@ def test_both_show_the_same_material(program: str, file: Path, rgb) -> None:
 
 
 @pytest.mark.parametrize("rgb", COLORS)
-def test_both_see_the_same_under_every_light(program: str, file: Path, rgb) -> None:
+def test_both_compute_the_same_color_under_every_light(program: str, file: Path, rgb) -> None:
     cube = upglow.Cube.read(file)
     for light in run(program, "color", str(file), *map(str, rgb))["lights"]:
         is_lamp = light["name"] == "365 nm lamp"

@@ -9,9 +9,9 @@ import upglow
 
 MAGENTA = np.array([0.9, 0.1, 0.8])
 COUNT = 200_000
-# Six standard deviations of a mean of so many draws from 0..1.
+# Six standard deviations of the mean of this many draws from 0..1.
 NOISE = 6 * 0.5 / COUNT**0.5
-# The trapezoid rule over 1 nm, of curves that bend at every nm.
+# The trapezoid rule over 1 nm, for curves whose slope changes at every nm.
 QUADRATURE = 2e-3
 
 
@@ -55,7 +55,7 @@ def test_draws_follow_their_density(any_cube, rng, dtype) -> None:
         assert np.allclose(found.pdf[~found.is_elastic][:100], again, rtol=1e-3, atol=1e-7)
 
 
-def test_throughput_is_what_the_material_carries(any_cube, rng) -> None:
+def test_throughput_is_the_materials_value_over_all_wavelengths(any_cube, rng) -> None:
     in_nm = 480.0
     found = any_cube.sample_outgoing(MAGENTA, in_nm, rng.random((100, 2)))
     # Emissions that end above zero lose a little outside their tables.
@@ -78,7 +78,7 @@ def test_an_estimate_by_sampling_is_the_integral(cube, rng) -> None:
     assert abs(values.mean() - exact) < deviation + QUADRATURE * exact
 
 
-def test_nothing_comes_back_from_black(cube) -> None:
+def test_black_absorbs_everything(cube) -> None:
     black = cube.sample_incident([0.0, 0.0, 0.0], 550.0, [0.5, 0.5])
     assert black.throughput < 1e-6
     assert not cube.incident_pdf_per_nm([0.0, 0.0, 0.0], 500.0, 550.0)
@@ -89,12 +89,12 @@ def test_matrices_hold_reflectance_albedo_and_energy(any_cube, rng) -> None:
     matrix = any_cube.reradiation_matrix(rgb, upglow.FINE_NM)
     total = matrix.sum(axis=-2)
     assert total.max() <= 1 + 1e-9 and matrix.min() >= 0
-    # The rim of the bands cuts a little of emissions off.
+    # The ends of the bands cut off a little of the emissions.
     assert np.abs(total - any_cube.albedo(rgb, upglow.FINE_NM)).max() < 2e-3
     assert np.abs(np.tril(matrix, -1)).max() > 1e-4 or any_cube.model == "reflectance"
 
 
-def test_verification_holds_and_tells_progress(cube) -> None:
+def test_verification_holds_and_reports_progress(cube) -> None:
     told: list[tuple[str, int, int]] = []
     report = cube.verify(points=3000, progress=lambda *step: told.append(step))
     assert report.holds and report.broken == ()
