@@ -1,4 +1,4 @@
-//! Fits tables of sigmoid coefficients for programs that read nothing else.
+//! Fits tables of sigmoid coefficients, for programs that cannot read cubes.
 
 use upglow::{CoefficientTable, Integrator, Model, Sigmoid};
 use upglow_color::rounding::to_single;
@@ -8,7 +8,7 @@ use crate::cube::{BuildError, Spread, Stage};
 use crate::fitter::Fitter;
 use crate::options::FitOptions;
 use crate::problem::parabola::sigmoid_of;
-use crate::problem::solver::{Jacobian, Residuals, SolverOptions, solve};
+use crate::problem::solver::{SolverOptions, solve};
 use crate::problem::{PassiveProblem, Shape};
 use crate::progress::Watch;
 use crate::search::job::Job;
@@ -17,9 +17,9 @@ use crate::verify::random_rgb;
 /// Fits the reflectance of every node of a [`CoefficientTable`], on all threads of the current rayon
 /// pool.
 ///
-/// Each column of nodes of one hue is followed from the middle of the brightness to both ends, so
-/// that neighbors have like coefficients: readers interpolate them. Where no reflectance within the
-/// slope limit has the color, the node has the nearest one that is found from there.
+/// The nodes of one hue and saturation are fitted from medium brightness to both ends, each from its
+/// neighbor's coefficients, so that these are similar: readers interpolate them. If no reflectance
+/// within the slope limit matches, the node gets the nearest one found.
 ///
 /// # Errors
 ///
@@ -47,8 +47,8 @@ pub fn fit_coefficients(
     Ok(CoefficientTable::new(brightness, nodes, Some(Integrator::of(contract)))?)
 }
 
-/// CIEDE2000 of what a reader finds in `table` for `points` random colors of the contract's RGB
-/// space, under its light, by sums over 5 nm. The same `seed` draws the same colors.
+/// CIEDE2000 between `points` random colors of the contract's RGB space and the reflectances that
+/// readers interpolate in `table`, by sums over 5 nm. The same `seed` draws the same colors.
 pub fn round_trip(
     table: &CoefficientTable,
     contract: &Contract,
@@ -75,12 +75,13 @@ struct Column<'a> {
     column: usize,
 }
 
-/// Darker colors are judged as if lit until their greatest channel is this: the eye that CIEDE2000
-/// describes sees no hue in the dark, but a renderer's lamp may be bright. Larger makes fits of
-/// middle tones strict, smaller lets dark hues go.
+/// Darker colors are fitted at an exposure that brings their greatest channel to this. CIEDE2000 hardly
+/// counts the hue of dark colors, but a renderer's light may be bright. Larger makes fits of midtones
+/// stricter; smaller loses dark hues.
 const LEAST_SEEN: f64 = 0.1;
 
-/// What published tables hold for black and white: flat reflectances of 4e-9 and 1 − 4e-9.
+/// The coefficient of white in published tables, and minus that of black: flat reflectances of 1 − 4e-9
+/// and 4e-9.
 const GREATEST_FLAT: f64 = 8192.0;
 
 impl Column<'_> {
@@ -99,28 +100,29 @@ impl Column<'_> {
         numbers.map(|s| [s.c0, s.c1, s.c2].map(to_single)).collect()
     }
 
-    /// Coefficients of 1, t, t² that the general search finds.
+    /// Coefficients of 1, t, t² by the general search.
     fn start(&self, step: usize) -> [f64; 3] {
         let rgb = self.table.node_rgb(self.place(step));
         let fit = self.fitter.fit(rgb).expect("nodes are in 0..=1");
         Shape::Free.numbers(fit.reflectance)
     }
 
-    /// Coefficients that show the color of a step of brightness, near those of its neighbor.
+    /// Coefficients for a step of brightness, starting at those of its neighbor.
     fn from(&self, step: usize, near: [f64; 3]) -> [f64; 3] {
         let problem = self.problem(step);
-        let free = solve(&problem.in_shape(Shape::Free), near, &SolverOptions::default()).x;
+        let free = solve(&problem, near, &SolverOptions::default()).x;
         let limit_per_nm = self.fitter.context.slope_limit_per_nm;
         if Shape::Free.edge(free).slope_per_nm.abs() <= limit_per_nm {
             return free;
         }
         let shape = Shape::Edge { slope_limit_per_nm: limit_per_nm };
         let start = shape.numbers(Shape::Free.edge(near));
-        let edge = solve(&problem.in_shape(shape), start, &SolverOptions::default()).x;
+        let problem = PassiveProblem { shape, ..problem };
+        let edge = solve(&problem, start, &SolverOptions::default()).x;
         Shape::Free.numbers(shape.edge(edge))
     }
 
-    /// A gray is flat whatever its neighbors are.
+    /// The coefficients to store: flat for grays.
     fn stored(&self, step: usize, found: [f64; 3]) -> Sigmoid {
         let job = Job { context: &self.fitter.context, goal: self.goal(step) };
         let flat =
@@ -142,38 +144,14 @@ impl Column<'_> {
         Metric::De2000.goal(colorimetry, color)
     }
 
-    fn problem(&self, step: usize) -> LitProblem<'_> {
+    fn problem(&self, step: usize) -> PassiveProblem<'_> {
         let value = f64::from(self.table.brightness()[step]);
-        // Black, at any exposure, is black.
+        // No exposure brightens black.
         let exposure = if value > 0.0 { (LEAST_SEEN / value).max(1.0) } else { 1.0 };
         let colorimetry = self.fitter.model().colorimetry();
         let lit = self.goal(step).xyz() * exposure;
         let goal = Metric::De2000.goal(colorimetry, lit);
-        let passive = PassiveProblem { sums: &self.fitter.context.sums, goal, shape: Shape::Free };
-        LitProblem { passive, exposure }
-    }
-}
-
-/// A reflectance under a brighter light than the contract's.
-#[derive(Clone, Copy, Debug)]
-struct LitProblem<'a> {
-    passive: PassiveProblem<'a>,
-    exposure: f64,
-}
-
-impl LitProblem<'_> {
-    fn in_shape(&self, shape: Shape) -> Self {
-        Self { passive: PassiveProblem { shape, ..self.passive }, ..*self }
-    }
-}
-
-impl Residuals<3, 3> for LitProblem<'_> {
-    fn eval(&self, x: &[f64; 3]) -> ([f64; 3], Jacobian<3, 3>) {
-        self.passive.eval_lit(x, self.exposure)
-    }
-
-    fn bounds(&self) -> [[f64; 2]; 3] {
-        self.passive.bounds()
+        PassiveProblem { sums: &self.fitter.context.sums, goal, shape: Shape::Free, exposure }
     }
 }
 
@@ -188,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn every_node_of_srgb_is_reached() {
+    fn every_node_of_srgb_is_matched() {
         // Fits end within 1e-4; coefficients in nm lose 5e-4 of the argument in single precision.
         const SINGLE: f64 = 0.02;
         let table = fit_coefficients(&srgb(), None, 8, &Unwatched).unwrap();
@@ -206,13 +184,13 @@ mod tests {
     }
 
     #[test]
-    fn a_reader_finds_a_color_between_nodes_the_nearer_the_more_of_them_there_are() {
+    fn colors_between_nodes_are_nearer_to_their_targets_in_finer_tables() {
         let spread = |resolution| {
             let table = fit_coefficients(&srgb(), None, resolution, &Unwatched).unwrap();
             round_trip(&table, &srgb(), 1000, 0)
         };
-        // Straight lines between nodes err by the square of their distance: half the distance
-        // should leave a quarter; the dense levels of brightness do not halve evenly.
+        // Linear interpolation errs by the square of the distance between nodes: half the distance
+        // should leave a quarter of the error, but brightness is not spaced evenly.
         let [coarse, fine] = [9, 17].map(spread);
         assert!(fine.mean < coarse.mean / 3.0, "{fine:?} {coarse:?}");
         assert_eq!(fine, spread(17));

@@ -17,7 +17,7 @@ use crate::progress::{Progress, Watch};
 use lattice::Lattice;
 pub use summary::{CubeSummary, Spread};
 
-/// Why no cube was built.
+/// Why a cube was not built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BuildError {
@@ -37,11 +37,12 @@ pub enum BuildError {
 
 /// Fits a material for every node of a cube, on all threads of the current rayon pool.
 ///
-/// First a coarse lattice, each node alone; then twice the nodes between, each from the materials
-/// at the corners of its cell; then, in as many sweeps as the options say, each node that missed
-/// its color tries the materials of its six neighbors, as they were before the sweep. So the result
-/// does not depend on the number of threads. [`Method::Exhaustive`](crate::Method::Exhaustive) and
-/// the methods of König et al. 2020 fit every node alone.
+/// First a coarse lattice, each node alone; then, in two steps, the nodes between, each from the
+/// materials at the corners of its cell; then sweeps, as many as the options say, in which each node
+/// that missed its color tries the materials of its six neighbors. A sweep uses the materials from
+/// before it, so the result does not depend on the number of threads.
+/// [`Method::Exhaustive`](crate::Method::Exhaustive) and the methods of König et al. 2020 fit every node
+/// alone before the sweeps.
 ///
 /// # Errors
 ///
@@ -59,17 +60,15 @@ pub fn build_cube(
     let mut moved = vec![true; lattice.len()];
     for _ in 0..options.sweeps {
         let before = fits;
-        fits = each_node(lattice, "asking neighbors", watch, |index| {
-            sweep_node(&fitter, lattice, &before, &moved, index)
-        })?;
+        fits = Stage::new("asking neighbors", lattice.len(), watch)
+            .each(lattice.len(), |index| sweep_node(&fitter, lattice, &before, &moved, index))?;
         moved = fits.iter().zip(&before).map(|(now, then)| now != then).collect();
         if !moved.contains(&true) {
             break;
         }
     }
-    let nodes = each_node(lattice, "measuring", watch, |index| {
-        stored_node(&fitter, lattice.rgb(index), &fits[index])
-    })?;
+    let nodes = Stage::new("measuring", lattice.len(), watch)
+        .each(lattice.len(), |index| stored_node(&fitter, lattice.rgb(index), &fits[index]))?;
     let fit = FitRecord {
         metric: options.metric.to_string(),
         slope_max_per_nm: options.slope_max_per_nm,
@@ -80,7 +79,7 @@ pub fn build_cube(
     Ok(Cube::new(contract.clone(), model.clone(), fit, resolution, nodes)?)
 }
 
-/// Fits every node: those of the coarsest lattice alone, each finer one from the materials around its nodes.
+/// Fits the nodes of the coarsest lattice alone, and those of finer ones from the materials around.
 fn fit_coarse_to_fine(
     fitter: &Fitter,
     lattice: Lattice,
@@ -99,10 +98,10 @@ fn fit_coarse_to_fine(
     Ok(fits.into_iter().map(|fit| fit.expect("the steps hold every node")).collect())
 }
 
-/// How many nodes a thread takes at a time: enough that telling progress costs nothing.
+/// How many nodes a thread takes at a time: enough to make the cost of progress negligible.
 const BATCH: usize = 64;
 
-/// The work of one stage: done in parallel, told to a watcher, given up when it says so.
+/// A stage of the work: runs in parallel, reports progress, stops when the watcher says so.
 pub(crate) struct Stage<'w> {
     name: &'static str,
     done: AtomicUsize,
@@ -115,7 +114,7 @@ impl<'w> Stage<'w> {
         Self { name, done: AtomicUsize::new(0), total, watch }
     }
 
-    /// `work` for each of `count` numbers, in their order.
+    /// The results of `work` for 0 to `count` − 1, in order.
     pub(crate) fn each<T: Send + Clone>(
         &self,
         count: usize,
@@ -140,19 +139,9 @@ impl<'w> Stage<'w> {
     }
 }
 
-/// `work` for each node, in the order of the nodes.
-fn each_node<T: Send + Copy>(
-    lattice: Lattice,
-    stage: &'static str,
-    watch: &dyn Watch,
-    work: impl Fn(usize) -> T + Sync,
-) -> Result<Vec<T>, BuildError> {
-    Stage::new(stage, lattice.len(), watch).each(lattice.len(), work)
-}
-
-/// One node in a sweep: what it had, or better from its neighbors.
+/// The fit of one node after a sweep.
 ///
-/// Where neither the node nor a neighbor moved in the last sweep, nothing new can come of it.
+/// If neither the node nor a neighbor changed in the last sweep, another one would change nothing.
 fn sweep_node(
     fitter: &Fitter,
     lattice: Lattice,
@@ -169,13 +158,12 @@ fn sweep_node(
     fitter.improve(lattice.rgb(index), known, &neighbors)
 }
 
-/// A fit as the cube keeps it, with the color difference of what is kept.
+/// A fit as the cube stores it, with the color difference of the stored material.
 fn stored_node(fitter: &Fitter, rgb: LinearRgb, fit: &Fit) -> Node {
     let model = fitter.model();
     let target = model.colorimetry().xyz_from_rgb(rgb);
-    let mut node = Node::new(fit.reflectance, fit.fluorescence, 0.0);
+    let node = Node::new(fit.reflectance, fit.fluorescence, 0.0);
     let color = model.color(node.material(model.model()));
     let de2000 = Metric::De2000.distance(model.colorimetry(), target, color);
-    node = Node::new(fit.reflectance, fit.fluorescence, de2000);
-    node
+    Node::new(fit.reflectance, fit.fluorescence, de2000)
 }

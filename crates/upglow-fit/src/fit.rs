@@ -3,28 +3,30 @@
 use upglow::{Edge, Fluorescence, Material};
 use upglow_color::Lab;
 
-/// The material of one color.
+use crate::cube::CubeSummary;
+
+/// The material of one color, and how well it matches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 pub struct Fit {
-    /// The reflectance, by its steepest point.
+    /// The reflectance, given by its steepest point.
     pub reflectance: Edge,
     /// The fluorescence.
     pub fluorescence: Fluorescence,
-    /// Distance from the color by the metric of the fit.
+    /// Distance from the target by the metric of the fit.
     pub distance: f64,
-    /// CIEDE2000 of the material against the color, under the contract, sums over 5 nm.
+    /// CIEDE2000 from the target under the contract, by sums over 5 nm.
     pub de2000: f64,
-    /// CIELAB of the material under the contract, sums over 5 nm.
+    /// CIELAB of the material under the contract, by sums over 5 nm.
     pub lab: Lab,
 }
 
-/// A color is matched, and needs no more fluorescence, at this CIEDE2000: a hundredth of what
-/// an eye can tell.
-pub(crate) const EXACT: f64 = 0.01;
+/// A fit within this CIEDE2000 matches its color and gets no more fluorescence: a hundredth of a
+/// visible difference.
+pub(crate) const EXACT: f64 = CubeSummary::EXACT_DE2000;
 
 impl Fit {
-    /// Whether an eye sees no difference at all from the color.
+    /// Whether the material matches its color.
     pub(crate) fn is_matched(&self) -> bool {
         self.de2000 <= EXACT
     }

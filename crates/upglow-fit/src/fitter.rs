@@ -1,4 +1,6 @@
-//! Fits the material of one color.
+//! Fits a material to one color.
+
+use std::sync::atomic::Ordering;
 
 use upglow::{Model, ModelOnGrid};
 use upglow_color::{Contract, LinearRgb};
@@ -9,7 +11,7 @@ use crate::search::context::Context;
 use crate::search::job::Job;
 use crate::search::konig2020::Parameters;
 
-/// Everything that fits under one contract, with one model, share.
+/// Fits materials to colors under one contract, with one model.
 #[derive(Debug)]
 pub struct Fitter {
     pub(crate) context: Context,
@@ -20,7 +22,7 @@ pub struct Fitter {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ColorError {
-    /// A component is not a number in the range.
+    /// A component is out of range or NaN.
     #[error("{channel} is {value}, expected 0 to {}", Fitter::BRIGHTEST)]
     Outside {
         /// red, green or blue.
@@ -30,11 +32,12 @@ pub enum ColorError {
     },
 }
 
-/// Single precision rounds a slope by 6e-8 of itself; fits stay below the limit by more.
+/// Fits stay below the slope limit by this share of it, so that rounding to single precision, 6e-8, does
+/// not exceed it.
 const SLOPE_MARGIN: f64 = 1e-6;
 
 impl Fitter {
-    /// The greatest value of an RGB component: no fluorescent material is ten times white.
+    /// The greatest RGB component that is fitted: no fluorescent material is ten times as bright as white.
     pub const BRIGHTEST: f64 = 10.0;
 
     /// Prepares fits under a contract, with a model.
@@ -58,17 +61,17 @@ impl Fitter {
 
     /// How often residuals and derivatives were evaluated so far, in all fits.
     pub fn evaluations(&self) -> u64 {
-        self.context.evaluations()
+        self.context.evaluations.load(Ordering::Relaxed)
     }
 
     /// The material of `rgb`, which may be brighter than white.
     ///
-    /// Reflectance alone where that shows the color within 0.01 ΔE00; else with as little
-    /// fluorescence as the color needs; else the nearest material that the search finds.
+    /// A reflectance if one matches the color within 0.01 ΔE00; else a match with as little fluorescence
+    /// as the color needs; else the nearest material that the search finds.
     ///
     /// # Errors
     ///
-    /// [`ColorError`] if a component is not a number in 0..=10.
+    /// [`ColorError`] if a component is not in 0..=10.
     pub fn fit(&self, rgb: LinearRgb) -> Result<Fit, ColorError> {
         for (channel, value) in ["red", "green", "blue"].into_iter().zip(rgb.0) {
             if !(0.0..=Self::BRIGHTEST).contains(&value) {
@@ -78,7 +81,7 @@ impl Fitter {
         Ok(self.fit_among(rgb, &[]))
     }
 
-    /// The material of `rgb`, which is in 0..=1, found from those of colors around it.
+    /// The material of `rgb`, which is in 0..=1, with those of colors around it as starts.
     pub(crate) fn fit_among(&self, rgb: LinearRgb, around: &[Fit]) -> Fit {
         let job = self.job(rgb);
         job.gray().unwrap_or_else(|| match self.options.method {
@@ -89,7 +92,7 @@ impl Fitter {
         })
     }
 
-    /// The best of `known` and of what the materials of neighbors lead to.
+    /// The best of `known` and of the fits that start from the neighbors' materials.
     pub(crate) fn improve(&self, rgb: LinearRgb, known: Fit, neighbors: &[Fit]) -> Fit {
         let job = self.job(rgb);
         match self.options.method {

@@ -1,7 +1,8 @@
-//! The way from colors to materials: fits one color, builds whole cubes, verifies what was built.
+//! From colors to materials: fits one color, builds whole cubes, and verifies them.
 //!
 //! - one color: [`Fitter`], [`Fit`]
-//! - what it takes to show millions of colors: [`StandingTable`]
+//! - which kinds of material millions of colors need: [`StandingTable`]
+//! - one material per texel: [`Polisher`]
 //! - a cube: [`build_cube`], [`CubeSummary`], [`verify`]
 //!
 //! # Examples
@@ -20,7 +21,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Out of scope: what a renderer needs at run time (crate `upglow`), files' names, printing.
+//! Out of scope: what a renderer needs at run time (crate `upglow`), file names, printing.
 
 mod coefficients;
 mod cube;
@@ -34,7 +35,7 @@ mod search;
 mod standing_table;
 mod verify;
 
-/// What threads share: each fits, polishes and asks what colors need with one value.
+/// Threads share these.
 const _: () = {
     const fn is_shared<T: Send + Sync>() {}
     is_shared::<Fitter>();

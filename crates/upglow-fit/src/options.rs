@@ -1,15 +1,15 @@
-//! What a fit is asked for.
+//! The options of fits.
 
 use upglow::FitRecord;
 use upglow_color::{Metric, UnknownChoice, choices};
 
-/// The choices in a fit, apart from contract and model.
+/// The options of a fit, apart from contract and model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FitOptions {
     /// The color difference that is minimized. Default: CIEDE2000.
     pub metric: Metric,
-    /// Greatest |dr/dλ| of any reflectance, 1/nm; default 0.01. `None`: as steep as sums over 5 nm
-    /// can tell from a step, 0.2/nm.
+    /// Greatest |dr/dλ| of any reflectance, 1/nm; default 0.01. `None`: the steepest that sums over 5 nm
+    /// can distinguish from a step, 0.2/nm.
     pub slope_max_per_nm: Option<f64>,
     /// How often each node that missed its color tries its neighbors' materials. Default: 2.
     pub sweeps: u32,
@@ -21,20 +21,20 @@ pub struct FitOptions {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Method {
-    /// Reflectance alone where that is enough; else the best of what starts lead to, the materials
-    /// around a node or a table's, with the least fluorescence that shows the color.
+    /// A reflectance if one matches; else the best fit from the materials around a node or from those
+    /// of a table, with the least fluorescence that matches the color.
     #[default]
     Search,
-    /// As `Search`, but following a hundred starts and more to their end: the yardstick for it.
+    /// Fits from more than a hundred starts for each color, to compare `Search` with.
     Exhaustive,
-    /// The paper's: from gray, then from the neighbors' materials, through all pairs of dyes. The
-    /// solver moves c0, c1, c2 of a reflectance; the slope limit is a penalty.
+    /// That of König et al. 2020: from gray, then from the neighbors' materials, with each pair of dyes.
+    /// The unknowns of a reflectance are c0, c1, c2; the slope limit is a penalty.
     ///
     /// # Source
     ///
     /// `konig`, sections 4 and 5; `jung` for the sweeps.
     Konig2020,
-    /// As `Konig2020`, but the solver moves shift, width, slope; the slope limit is a bound.
+    /// As `Konig2020`, but the unknowns are shift, width, slope; the slope limit is a bound.
     Konig2020Features,
 }
 
@@ -49,7 +49,7 @@ impl Method {
         }
     }
 
-    /// The sweeps that this way of searching needs: two for ours, four as the paper has them.
+    /// The sweeps that this method needs: two for ours, four in the paper.
     pub const fn default_sweeps(self) -> u32 {
         match self {
             Self::Search | Self::Exhaustive => 2,
@@ -78,7 +78,7 @@ impl Default for FitOptions {
     }
 }
 
-/// The choices that a cube records.
+/// The options that a cube records.
 impl TryFrom<&FitRecord> for FitOptions {
     type Error = UnknownChoice;
 
@@ -92,7 +92,7 @@ impl TryFrom<&FitRecord> for FitOptions {
     }
 }
 
-/// Why a fit cannot start.
+/// Why options are rejected.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FitOptionsError {
@@ -104,13 +104,13 @@ pub enum FitOptionsError {
     },
 }
 
-/// Below the first every color is nearly gray. Beyond the second, where a reflectance goes from 0 to 1
-/// within 5 nm, sums over 5 nm see only a step: at 1/nm they call 97.4 % of ACEScg shown instead of
-/// 97.3 %, and are wrong by 0.05 ΔE00 in the mean when summed over 1 nm.
+/// Below the first every color is nearly gray. Beyond the second, a reflectance goes from 0 to 1 within
+/// 5 nm, which is only a step to sums over 5 nm: at 1/nm these find 97.4 % of ACEScg matched instead of
+/// 97.3 %, and differ from sums over 1 nm by 0.05 ΔE00 on average.
 pub(crate) const SLOPE_RANGE_PER_NM: [f64; 2] = [1e-4, 0.2];
 
 impl FitOptions {
-    /// The greatest slope that the fit allows itself, 1/nm.
+    /// The slope limit, 1/nm.
     ///
     /// # Errors
     ///

@@ -1,4 +1,4 @@
-//! The least-squares problems: what must become zero for a material to show its color.
+//! The least-squares problems of fitting a material to a color.
 
 use upglow::{AnalyticModel, DyeModel, Edge, Emitted, ModelOnGrid};
 use upglow_color::{Goal, Matrix3, Xyz};
@@ -14,17 +14,17 @@ use parabola::{
 use solver::{Jacobian, Residuals};
 use sums::{CLEAR, Lanes, Reflected, Sums, lanes_from};
 
-/// In which coordinates the reflectance moves.
+/// The coordinates of a reflectance in a fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Shape {
-    /// The parabola's coefficients, without any limit on the slope.
+    /// The parabola's coefficients, without a slope limit.
     Free,
-    /// Edge, level and slope relative to this limit, 1/nm.
+    /// Edge, level, and slope relative to the limit.
     Edge {
         /// The limit, 1/nm.
         slope_limit_per_nm: f64,
     },
-    /// Shift, width and slope relative to this limit; a slope does not change its sign.
+    /// Shift, width, and slope relative to the limit; the slope keeps its sign.
     Features {
         /// The limit, 1/nm.
         slope_limit_per_nm: f64,
@@ -33,16 +33,16 @@ pub(crate) enum Shape {
     },
 }
 
-/// Coefficients beyond this are steps between two samples.
+/// Greatest coefficient. Larger ones make steps between two samples.
 const FREE_BOUND: f64 = 1e3;
-/// How far from 565 nm a steepest point may lie, in 100 nm: further out nobody sees it.
+/// How far from 565 nm a steepest point may lie, in 100 nm: further away it is invisible.
 pub(crate) const EDGE_BOUND: f64 = 4.0;
 /// Greatest level of the steepest point: at the slope limit 0.01/nm the extremum is then 2.5 nm
 /// away, half a step of the sums. Larger lets a fit hide a spike between two samples.
 pub(crate) const LEVEL_BOUND: f64 = 2.5;
-/// Widths of features, in 100 nm. Grays lie beyond the greatest.
+/// Range of the width of features, in 100 nm. Grays are wider.
 const WIDTH_BOUNDS: [f64; 2] = [0.025, 30.0];
-/// Least slope of features, relative to the limit: 0 is no slope at all.
+/// Least slope of features, relative to the limit; 0 has no features.
 const LEAST_SLOPE: f64 = 1e-3;
 
 /// Shift at 565 nm, width 100 nm, half the limit's slope.
@@ -57,10 +57,10 @@ impl Shape {
         }
     }
 
-    /// The numbers of a reflectance in these coordinates.
+    /// The coordinates of a reflectance.
     ///
-    /// Features of a flat reflectance are those of a wide soft one; of one of the other sign,
-    /// those of a shape of this sign in the same place.
+    /// A flat reflectance gets the features of a soft one, and one of the other sign those of its
+    /// mirror image.
     pub(crate) fn numbers(self, edge: Edge) -> [f64; 3] {
         match self {
             Self::Free => {
@@ -78,7 +78,7 @@ impl Shape {
         }
     }
 
-    /// The reflectance with these numbers.
+    /// The reflectance with these coordinates.
     pub(crate) fn edge(self, numbers: [f64; 3]) -> Edge {
         match self {
             Self::Edge { slope_limit_per_nm } => edge_of(numbers, slope_limit_per_nm),
@@ -102,12 +102,12 @@ impl Shape {
     }
 }
 
-/// Number of the concentration among the unknowns of every fluorescent problem.
+/// Index of the concentration among the unknowns of every fluorescent problem.
 pub(crate) const CONCENTRATION: usize = 3;
 
 const FRACTION: [f64; 2] = [0.0, 1.0];
 
-/// Residuals of a color and their derivatives by unknowns that move it so.
+/// Residuals of a color, and their derivatives from those of the color.
 fn residuals_of<const N: usize>(
     goal: &Goal,
     color: Xyz,
@@ -118,33 +118,28 @@ fn residuals_of<const N: usize>(
     (residuals, [0, 1, 2].map(|i| columns.map(|column| column[i])))
 }
 
-/// Derivatives of the color by the shape's three numbers.
+/// Derivatives of the color with respect to the shape's coordinates.
 fn by_shape<const K: usize>(reflected: &Reflected<K>, jacobian: [[f64; 3]; 3]) -> [Xyz; 3] {
     let by_parabola = Matrix3::from_columns(reflected.by_parabola.map(|by| by.0));
     [0, 1, 2].map(|v| Xyz(by_parabola * [0, 1, 2].map(|m| jacobian[m][v])))
 }
 
-/// Reflectance alone; the unknowns are the shape's numbers.
+/// Reflectance alone; the unknowns are the shape's coordinates.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PassiveProblem<'a> {
     pub(crate) sums: &'a Sums,
     pub(crate) goal: Goal,
     pub(crate) shape: Shape,
-}
-
-impl PassiveProblem<'_> {
-    /// Residuals and derivatives where the light is `exposure` times the contract's.
-    pub(crate) fn eval_lit(&self, x: &[f64; 3], exposure: f64) -> ([f64; 3], Jacobian<3, 3>) {
-        let (parabola, jacobian) = self.shape.chart(*x);
-        let reflected = self.sums.reflect(parabola, &CLEAR, []);
-        let derivatives = by_shape(&reflected, jacobian).map(|by| by * exposure);
-        residuals_of(&self.goal, reflected.color * exposure, derivatives)
-    }
+    /// How many times brighter the light is than the contract's.
+    pub(crate) exposure: f64,
 }
 
 impl Residuals<3, 3> for PassiveProblem<'_> {
     fn eval(&self, x: &[f64; 3]) -> ([f64; 3], Jacobian<3, 3>) {
-        self.eval_lit(x, 1.0)
+        let (parabola, jacobian) = self.shape.chart(*x);
+        let reflected = self.sums.reflect(parabola, &CLEAR, []);
+        let derivatives = by_shape(&reflected, jacobian).map(|by| by * self.exposure);
+        residuals_of(&self.goal, reflected.color * self.exposure, derivatives)
     }
 
     fn bounds(&self) -> [[f64; 2]; 3] {
@@ -152,7 +147,7 @@ impl Residuals<3, 3> for PassiveProblem<'_> {
     }
 }
 
-/// Reflectance and a pair of dyes; the unknowns are the shape's numbers, concentration, weight.
+/// Reflectance and a pair of dyes; the unknowns are the shape's coordinates, concentration, weight.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct DyeProblem<'a> {
     pub(crate) sums: &'a Sums,
@@ -161,7 +156,7 @@ pub(crate) struct DyeProblem<'a> {
     pub(crate) model: &'a ModelOnGrid,
     pub(crate) dyes: &'a DyeModel,
     pub(crate) first: usize,
-    /// What the pair absorbs at concentration 1.
+    /// Absorption of the two dyes at concentration 1.
     pub(crate) absorption: [&'a Lanes; 2],
 }
 
@@ -184,13 +179,13 @@ impl Residuals<3, 5> for DyeProblem<'_> {
 
     fn bounds(&self) -> [[f64; 2]; 5] {
         let [s0, s1, s2] = self.shape.bounds();
-        // A dye without a neighbor is its own: its weight means nothing.
+        // A single dye is its own partner: its weight has no effect.
         let weight = if self.dyes.curves().len() == 1 { [0.0, 0.0] } else { FRACTION };
         [s0, s1, s2, FRACTION, weight]
     }
 }
 
-/// Reflectance and bells; the unknowns are the shape's numbers, concentration, and emission peak
+/// Reflectance and bells; the unknowns are the shape's coordinates, concentration, and emission peak
 /// and Stokes shift in [`UNIT_NM`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BellProblem<'a> {
@@ -230,8 +225,8 @@ impl Residuals<3, 6> for BellProblem<'_> {
     }
 }
 
-/// The same color with less fluorescence: a fluorescent problem whose residuals carry multipliers,
-/// and whose concentration is a fourth one.
+/// The same color with less fluorescence: multipliers are added to the residuals, and the weighted
+/// concentration is a fourth one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LeastProblem<'p, P> {
     pub(crate) problem: &'p P,
@@ -254,16 +249,15 @@ impl<const N: usize, P: Residuals<3, N>> Residuals<4, N> for LeastProblem<'_, P>
     }
 }
 
-/// A problem in free coefficients whose fourth residual is how far the reflectance is above the
-/// slope limit.
+/// A problem in free coefficients with a fourth residual, a penalty for exceeding the slope limit.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LimitedProblem<'p, P> {
     pub(crate) problem: &'p P,
     pub(crate) slope_limit_per_nm: f64,
 }
 
-/// What a slope of twice the limit counts, in units of the metric. Larger makes the solver crawl
-/// along the limit, smaller leaves it too far above.
+/// The penalty for a slope of twice the limit, in units of the metric. Larger makes the solver slow
+/// along the limit; smaller leaves slopes too far above it.
 const STEEPNESS_WEIGHT: f64 = 100.0;
 
 impl<const N: usize, P: Residuals<3, N>> Residuals<4, N> for LimitedProblem<'_, P> {
@@ -307,7 +301,7 @@ mod tests {
         let sums = Sums::new(&model);
         for goal in goals(&colorimetry) {
             for shape in SHAPES {
-                let problem = PassiveProblem { sums: &sums, goal, shape };
+                let problem = PassiveProblem { sums: &sums, goal, shape, exposure: 1.0 };
                 assert!(jacobian_error(&problem, &[0.2, -0.7, 0.5], &[STEP; 3]) < TOLERANCE);
             }
         }

@@ -1,9 +1,9 @@
-//! How long work tells where it stands, and how it is stopped.
+//! How long-running work reports its progress, and how it is stopped.
 
-/// A step of the work that was done.
+/// How far the work is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Progress {
-    /// What is being done, for people.
+    /// What is being done, for display.
     pub stage: &'static str,
     /// Units done in this stage.
     pub done: usize,
@@ -11,16 +11,16 @@ pub struct Progress {
     pub total: usize,
 }
 
-/// Somebody who watches the work, from any thread.
+/// A watcher of the work.
 pub trait Watch: Sync {
-    /// Takes note of progress. Called often and from many threads.
+    /// Receives progress; called often, and from many threads.
     fn progress(&self, progress: Progress);
 
-    /// Whether the work should stop; asked often.
+    /// Whether the work should stop; called often, and from many threads.
     fn stopped(&self) -> bool;
 }
 
-/// Nobody watches.
+/// Ignores progress and never stops the work.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Unwatched;
 

@@ -1,4 +1,4 @@
-//! Our way to the material of a color: reflectance first, then the most promising starts.
+//! Our search for the material of a color: reflectance first, then the most promising starts.
 
 pub(crate) mod context;
 pub(crate) mod job;
@@ -12,63 +12,54 @@ use upglow_color::{Metric, ciede2000};
 use crate::fit::{EXACT, Fit, Start};
 use crate::problem::Shape;
 use crate::problem::parabola::{MIDDLE_NM, sigmoid_of};
-use crate::problem::solver::{Residuals, SolverOptions, Summary, solve};
-use job::{Job, Solve};
+use crate::problem::solver::{SolverOptions, solve};
+use job::Job;
 use least::LeastConcentration;
 
-/// Evaluations for a reflectance without limits: it takes 5, and 10 where it goes astray.
+/// Greatest number of evaluations for a reflectance without slope limit: most take 5, detours 10.
 const PASSIVE_STEPS: usize = 12;
 
-/// A reflectance too steep by less than this factor, and matched within this distance, may have a
-/// neighbor within the limit that matches too.
+/// A reflectance that is too steep by less than this factor and matches within this distance may have
+/// a neighbor within the limit that matches too.
 const NEARLY_WITHIN: (f64, f64) = (1.5, 2.0);
 
-/// How many start materials are followed. More cost time; with fewer, some nodes end more than
-/// 0.02 ΔE00 from the best that an exhaustive search finds.
+/// How many of the table's starts are tried. More cost time; with fewer, some nodes end more than
+/// 0.02 ΔE00 from the best of the exhaustive search.
 const STARTS_FOLLOWED: usize = 10;
 
-/// How many are tried where a node misses its color and a neighbor does not, and where it misses
-/// and the neighbors' materials differ. With 3 and 3 a dozen nodes of 32³ end more than 0.02 ΔE00
-/// worse than with ten starts for each node, with these two; more cost time and find nothing.
+/// How many are tried if a node misses its color but a neighbor matches its own, and if it misses and
+/// the neighbors' materials differ. With 3 and 3, a dozen nodes of 32³ end more than 0.02 ΔE00 worse
+/// than with ten starts for each node; with these, two do. More cost time and improve nothing.
 const STARTS_BESIDE_A_MATCH: usize = 5;
 const STARTS_WHERE_NEIGHBORS_DIFFER: usize = 3;
 
-/// The same where nothing may fluoresce: without it a node of 9³ ends beyond 1 ΔE00 that need not.
+/// The same for cubes of reflectances. With 0, a node of 9³ that need not ends beyond 1 ΔE00.
 const PASSIVE_STARTS_BESIDE_A_MATCH: usize = 1;
 
-/// Beside a color that needs no more concentration than this, reflectance alone may do.
+/// If a neighbor needs no more concentration than this, a reflectance may match.
 const NEARLY_PASSIVE: f64 = 0.1;
 
-/// How many starts of each bucket the exhaustive search follows: 192 in all with eight dyes. Forty
-/// of each find nothing on 500 nodes of ACEScg that twelve miss by 0.001 ΔE00.
+/// How many starts of each bucket the exhaustive search tries: 192 in all with eight dyes. Forty of
+/// each improve none of 500 nodes of ACEScg by 0.001 ΔE00.
 const EXHAUSTIVE_STARTS: usize = 12;
 
-/// How many neighbors' materials are followed.
+/// How many neighbors' materials are tried as starts.
 const NEIGHBORS_FOLLOWED: usize = 2;
 
-/// How often a fit whose weight reaches its end goes on with the next pair of dyes.
+/// How often a fit whose weight reaches a bound continues with the next pair of dyes.
 const MOST_HOPS: usize = 2;
 
-/// The nearest color, by the solver's defaults.
-struct NearestColor;
-
-impl Solve for NearestColor {
-    fn solve<const N: usize>(&self, problem: &impl Residuals<3, N>, start: [f64; N]) -> Summary<N> {
-        solve(problem, start, &SolverOptions::default())
-    }
-}
-
 impl Job<'_> {
-    /// Reflectance alone if that shows the color; else, with as little fluorescence as the color
-    /// needs, the best of what the materials of colors `around` it lead to, or, where there are
-    /// none or they leave a doubt, the nearest starts.
+    /// A reflectance if one matches; else the best fit from the materials of the colors `around`, and,
+    /// if there are none or their fits may be improved, from the nearest starts of the table. A match
+    /// has as little fluorescence as the color needs.
     pub(crate) fn search(&self, around: &[Fit]) -> Fit {
         let leading = self.distinct(around.iter().filter(|fit| self.leads(fit)));
         if leading.is_empty() {
             let best = self.without_fluorescence();
             return self.try_starts(best, STARTS_FOLLOWED).expect("there is at least one start");
         }
-        let doubt = self.starts_against_doubt(around, leading.len());
+        let count = self.starts_to_add(around, leading.len());
         let mut best = None;
         let is_nearly_passive =
             |fit: &Fit| fit.is_matched() && fit.fluorescence.concentration() < NEARLY_PASSIVE;
@@ -76,10 +67,10 @@ impl Job<'_> {
             best = self.without_fluorescence();
         }
         best = self.best_of(best, leading.into_iter().take(NEIGHBORS_FOLLOWED).map(Start::from));
-        self.try_starts(best, doubt).expect("there is something that leads")
+        self.try_starts(best, count).expect("there is at least one neighbor")
     }
 
-    /// The best of `known` and of where some of the nearest starts lead.
+    /// The best of `known` and of the fits from some of the nearest starts.
     fn try_starts(&self, known: Option<Fit>, count: usize) -> Option<Fit> {
         if count == 0 || known.is_some_and(|fit| fit.is_matched()) {
             return known;
@@ -87,7 +78,7 @@ impl Job<'_> {
         self.best_of(known, self.context.starts.nearest(&self.goal).into_iter().take(count))
     }
 
-    /// The best of `known` and of where `starts` lead. The first match ends it, with as little
+    /// The best of `known` and of the fits from `starts`. Stops at the first match, with as little
     /// fluorescence as it needs.
     fn best_of(&self, known: Option<Fit>, starts: impl Iterator<Item = Start>) -> Option<Fit> {
         let mut best = known;
@@ -95,7 +86,7 @@ impl Job<'_> {
             if best.is_some_and(|fit| fit.is_matched()) {
                 break;
             }
-            let found = self.lead_on(start);
+            let found = self.fit_from(start);
             if found.is_matched() {
                 return Some(self.with_least_fluorescence(found));
             }
@@ -104,16 +95,16 @@ impl Job<'_> {
         best
     }
 
-    /// Whether a neighbor's material is a start: a gray cannot move in the coordinates of its edge,
-    /// and where dyes are needed one without is no nearer than the table's.
+    /// Whether a neighbor's material is a useful start: a gray cannot move in the coordinates of its
+    /// edge, and a reflectance is no better a start than the table's for a fluorescent material.
     fn leads(&self, fit: &Fit) -> bool {
         let may_fluoresce = *self.context.model.model() != Model::Reflectance;
         fit.reflectance.slope_per_nm != 0.0
             && (fit.fluorescence != Fluorescence::None || !may_fluoresce)
     }
 
-    /// How many starts of the table are tried where the neighbors' materials miss.
-    fn starts_against_doubt(&self, around: &[Fit], kinds: usize) -> usize {
+    /// How many starts of the table are tried if the fits from the neighbors' materials miss.
+    fn starts_to_add(&self, around: &[Fit], kinds: usize) -> usize {
         let is_beside_a_match = around.iter().any(Fit::is_matched);
         match self.context.model.model() {
             Model::Reflectance if is_beside_a_match => PASSIVE_STARTS_BESIDE_A_MATCH,
@@ -124,7 +115,7 @@ impl Job<'_> {
         }
     }
 
-    /// The best that many starts lead to: the yardstick for [`Job::search`].
+    /// The best fit from many starts, to compare [`Job::search`] with.
     pub(crate) fn search_exhaustively(&self) -> Fit {
         let mut best = self.without_fluorescence();
         if let Some(passive) = best
@@ -133,12 +124,12 @@ impl Job<'_> {
             return passive;
         }
         for start in self.context.starts.nearest_of_each(&self.goal, EXHAUSTIVE_STARTS) {
-            best = Some(nearer(best, self.lead_on(start)));
+            best = Some(nearer(best, self.fit_from(start)));
         }
         best.expect("there is at least one start")
     }
 
-    /// The best of `known` and of what the nearest of some materials lead to.
+    /// The best of `known` and of the fits from the nearest of the neighbors' materials.
     pub(crate) fn improve(&self, known: Fit, neighbors: &[Fit]) -> Fit {
         let leads_on = |fit: &&Fit| {
             !is_alike(&known, fit) || ciede2000(self.goal.lab(), fit.lab) < known.de2000
@@ -148,9 +139,7 @@ impl Job<'_> {
         self.best_of(Some(known), starts).unwrap_or(known)
     }
 
-    /// The materials that lead to different places, nearest first.
-    ///
-    /// Near by CIELAB, which costs nothing here: of what leads to one place any does.
+    /// The materials that are not alike, nearest in CIELAB first, of those alike the nearest.
     fn distinct<'a>(&self, fits: impl Iterator<Item = &'a Fit>) -> Vec<Fit> {
         let mut sorted: Vec<(f64, Fit)> =
             fits.map(|fit| (fit.lab.de76(self.goal.lab()), *fit)).collect();
@@ -164,7 +153,7 @@ impl Job<'_> {
         distinct
     }
 
-    /// A reflectance that shows the color, or nearly, within the slope limit.
+    /// A reflectance within the slope limit that matches, or nearly matches, the color.
     pub(crate) fn without_fluorescence(&self) -> Option<Fit> {
         let in_lab = Self { goal: self.goal.under(Metric::De76), ..*self };
         let problem = in_lab.passive_problem(Shape::Free);
@@ -174,21 +163,21 @@ impl Job<'_> {
         let reflectance = sigmoid_of(free.x).to_edge(MIDDLE_NM);
         let steepness = reflectance.slope_per_nm.abs() / self.context.slope_limit_per_nm;
         if steepness <= 1.0 {
-            return Some(self.judge(reflectance, Fluorescence::None));
+            return Some(self.measured(reflectance, Fluorescence::None));
         }
         let (factor, distance) = NEARLY_WITHIN;
         let start = Start { reflectance, fluorescence: Fluorescence::None };
         (steepness < factor && free.norm < distance)
-            .then(|| self.follow(start, self.edge_shape(), &NearestColor))
+            .then(|| self.follow(start, self.edge_shape(), &SolverOptions::default()))
     }
 
-    /// Where a start leads, over to the next pairs of dyes too.
-    fn lead_on(&self, start: Start) -> Fit {
-        let mut best = self.follow(start, self.edge_shape(), &NearestColor);
+    /// The fit from a start, continued with the next pairs of dyes.
+    fn fit_from(&self, start: Start) -> Fit {
+        let mut best = self.follow(start, self.edge_shape(), &SolverOptions::default());
         if let Model::Dyes(dyes) = self.context.model.model() {
             for _ in 0..MOST_HOPS {
                 let Some(next) = next_pair(dyes, best) else { break };
-                let found = self.follow(next, self.edge_shape(), &NearestColor);
+                let found = self.follow(next, self.edge_shape(), &SolverOptions::default());
                 if found.distance >= best.distance {
                     break;
                 }
@@ -213,9 +202,9 @@ fn nearer(known: Option<Fit>, found: Fit) -> Fit {
     known.filter(|known| known.distance <= found.distance).unwrap_or(found)
 }
 
-/// Whether two materials lead to the same place: nothing is gained by following both.
+/// Whether fits from two materials probably end at the same material.
 fn is_alike(a: &Fit, b: &Fit) -> bool {
-    /// Weights nearer than this end in the same mixture; smaller follows more and gains nothing.
+    /// Weights nearer than this end in the same mixture; smaller tries more and improves nothing.
     const WEIGHTS: f64 = 0.3;
     /// Emission peaks and Stokes shifts nearer than this, nm.
     const BELLS_NM: f64 = 20.0;
@@ -235,8 +224,8 @@ fn is_alike(a: &Fit, b: &Fit) -> bool {
         }
 }
 
-/// A material whose weight is at its end, as a start for the other pair of that dye; `None` for
-/// one that is matched or uses both its dyes.
+/// A material with one dye of its pair, as a start for the other pair of that dye; `None` if it matches
+/// or uses both dyes.
 fn next_pair(dyes: &DyeModel, fit: Fit) -> Option<Start> {
     let Fluorescence::Dyes { first, weight, concentration } = fit.fluorescence else {
         return None;

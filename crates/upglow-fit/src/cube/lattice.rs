@@ -1,4 +1,4 @@
-//! Where the nodes of a cube are, and which lie around which.
+//! The nodes of a cube, their neighbors, and the order in which they are fitted.
 
 use upglow::{Cube, CubeError};
 use upglow_color::LinearRgb;
@@ -9,16 +9,16 @@ pub(crate) struct Lattice {
     resolution: usize,
 }
 
-/// Distance of the nodes that are fitted alone, in nodes: 8³ of 32³. With 2 a cube of reflectances
-/// takes nearly twice the evaluations and is no better; with 8 two hundred of its nodes end more
-/// than 0.02 ΔE00 worse than alone.
+/// Every so many nodes along an axis are fitted alone: 8³ of 32³. With 2, a cube of reflectances takes
+/// nearly twice the evaluations and is no better; with 8, two hundred of its nodes end more than
+/// 0.02 ΔE00 worse than if fitted alone.
 const COARSEST: usize = 4;
 
 /// The nodes that one step of refinement adds to a lattice.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Refinement {
     lattice: Lattice,
-    /// Distance of the nodes after this step; half of what it was before.
+    /// Distance between nodes after this step; half of that before.
     stride: usize,
 }
 
@@ -44,7 +44,7 @@ impl Lattice {
         LinearRgb(self.places(index).map(|place| place as f64 / last))
     }
 
-    /// The up to six nodes beside one.
+    /// The up to six nodes next to one.
     pub(crate) fn neighbors(self, index: usize) -> impl Iterator<Item = usize> {
         let n = self.resolution;
         [1, n, n * n].into_iter().flat_map(move |stride| {
@@ -62,7 +62,7 @@ impl Lattice {
             .map(move |stride| Refinement { lattice: self, stride })
     }
 
-    /// Numbers of a node along red, green, blue.
+    /// Indices of a node along red, green, blue.
     fn places(self, index: usize) -> [usize; 3] {
         let n = self.resolution;
         [index % n, index / n % n, index / (n * n)]
@@ -96,7 +96,7 @@ impl Refinement {
             for (k, place) in places.into_iter().enumerate() {
                 let offset = place % (2 * stride);
                 let is_above = corner >> k & 1 == 1;
-                // On the axis there is nothing to choose: one of the two corners stands for both.
+                // Without an offset along this axis both corners are the same: take one.
                 if is_above && offset == 0 {
                     return None;
                 }
@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn a_node_in_the_middle_of_a_cell_has_its_eight_corners_around_it() {
+    fn a_node_in_the_middle_of_a_cell_is_surrounded_by_eight_corners() {
         let lattice = Lattice::try_new(9).expect("it is in range");
         let finest = lattice.refinements().last().expect("there are steps");
         let around: Vec<[usize; 3]> =

@@ -1,8 +1,8 @@
-//! How well a cube's nodes match their colors.
+//! How well the nodes of a cube match their colors.
 
 use upglow::Cube;
 
-/// What the stored differences of a cube's nodes add up to.
+/// Statistics of the stored differences of a cube's nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[must_use]
@@ -17,7 +17,7 @@ pub struct CubeSummary {
     pub within_2: usize,
     /// Mean CIEDE2000 over the nodes.
     pub mean_de2000: f64,
-    /// The smallest CIEDE2000 that at least 95 in 100 nodes do not exceed.
+    /// The smallest CIEDE2000 that at least 95 % of the nodes do not exceed.
     pub p95_de2000: f64,
     /// Greatest CIEDE2000 of a node.
     pub max_de2000: f64,
@@ -26,9 +26,8 @@ pub struct CubeSummary {
 }
 
 impl CubeSummary {
-    /// A material this close to its color matches it exactly. Smaller counts rounding in single
-    /// precision as a miss; larger counts misses that two swatches side by side would show in a
-    /// gradient.
+    /// A material within this difference matches its color. Smaller would count rounding to single
+    /// precision as a miss; larger would count misses as matches that can be seen in a gradient.
     pub const EXACT_DE2000: f64 = 0.01;
 
     /// Reads the differences that the cube stores; nothing is recomputed.
@@ -56,14 +55,14 @@ impl CubeSummary {
 pub struct Spread {
     /// The mean.
     pub mean: f64,
-    /// By nearest rank: the smallest number that at least 95 in 100 do not exceed.
+    /// By nearest rank: the smallest number that at least 95 % do not exceed.
     pub p95: f64,
     /// The greatest.
     pub max: f64,
 }
 
 impl Spread {
-    /// Zeros where there are no numbers. The mean is summed in the order given.
+    /// Zeros if there are no numbers. The mean is summed in the order given.
     pub(crate) fn of(mut numbers: Vec<f64>) -> Self {
         let count = numbers.len();
         if count == 0 {

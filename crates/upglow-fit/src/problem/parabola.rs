@@ -1,4 +1,4 @@
-//! The parabola behind a sigmoid in the coordinates that fits move in.
+//! The parabola of a sigmoid as a function of the coordinates of fits.
 
 use upglow::{Edge, Sigmoid};
 
@@ -7,10 +7,10 @@ const CENTER_NM: f64 = 565.0;
 /// Length of one unit of t, nm.
 pub(crate) const UNIT_NM: f64 = 100.0;
 
-/// Of a shape's two steepest points the one nearer to this is its coordinate, nm.
+/// A shape has two steepest points; the one nearer to this wavelength, nm, is its edge.
 pub(crate) const MIDDLE_NM: f64 = 540.0;
 
-/// A wavelength in the fit's own unit.
+/// A wavelength as t.
 pub(crate) fn scaled(lambda_nm: f64) -> f64 {
     (lambda_nm - CENTER_NM) / UNIT_NM
 }
@@ -18,10 +18,10 @@ pub(crate) fn scaled(lambda_nm: f64) -> f64 {
 /// Coefficients of 1, t, t².
 pub(crate) type Parabola = [f64; 3];
 
-/// A parabola and its derivatives by three shape numbers, `[coefficient][number]`.
+/// A parabola and its derivatives with respect to three coordinates, `[coefficient][coordinate]`.
 pub(crate) type Chart = (Parabola, [[f64; 3]; 3]);
 
-/// The parabola that is its own coordinates.
+/// The parabola with these coefficients as its coordinates.
 pub(crate) fn free_chart(coefficients: [f64; 3]) -> Chart {
     (coefficients, [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
 }
@@ -84,16 +84,16 @@ pub(crate) fn feature_chart([z, w, relative]: [f64; 3], slope_limit_per_nm: f64)
     ([c0 * z * z + peak, -2.0 * c0 * z, c0], jacobian)
 }
 
-/// The numbers of [`feature_chart`] for a reflectance; `None` where it has no features.
+/// The coordinates of [`feature_chart`] for a reflectance; `None` if it has no features.
 pub(crate) fn feature_numbers(edge: Edge, slope_limit_per_nm: f64) -> Option<[f64; 3]> {
     let features = edge.to_sigmoid().to_vertex()?.to_features()?;
     let slope = features.slope_per_nm / slope_limit_per_nm;
     Some([scaled(features.shift_nm), features.width_nm / UNIT_NM, slope])
 }
 
-/// The greatest |dr/dλ| relative to `slope_limit_per_nm`, and its derivatives by the coefficients.
-///
-/// Where the slope is greatest it does not change with wavelength, so only the coefficients move it.
+/// The greatest |dr/dλ| relative to `slope_limit_per_nm`, and its derivatives with respect to the
+/// coefficients. At its maximum the slope is stationary in wavelength, so that the shift of the maximum
+/// does not contribute.
 pub(crate) fn steepness(parabola: Parabola, slope_limit_per_nm: f64) -> (f64, [f64; 3]) {
     let edge = sigmoid_of(parabola).to_edge(CENTER_NM);
     let t = scaled(edge.edge_nm);

@@ -1,9 +1,9 @@
-//! Least squares in a box: Levenberg and Marquardt's method with bounds.
+//! Bounded least squares by the Levenberg–Marquardt method.
 
-/// Derivatives of `M` residuals by `N` unknowns, `[residual][unknown]`.
+/// Derivatives of `M` residuals with respect to `N` unknowns, `[residual][unknown]`.
 pub(crate) type Jacobian<const M: usize, const N: usize> = [[f64; N]; M];
 
-/// A least-squares problem: `M` residuals in `N` unknowns, each within bounds.
+/// A least-squares problem: `M` residuals of `N` bounded unknowns.
 pub(crate) trait Residuals<const M: usize, const N: usize> {
     /// Residuals at `x`, and their derivatives.
     fn eval(&self, x: &[f64; N]) -> ([f64; M], Jacobian<M, N>);
@@ -12,7 +12,7 @@ pub(crate) trait Residuals<const M: usize, const N: usize> {
     fn bounds(&self) -> [[f64; 2]; N];
 }
 
-/// When a solution is good enough, and how to get there.
+/// Stopping rules, and the first damping.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SolverOptions {
     /// Stop when the norm of the residuals is at or below this. Default: 1e-4.
@@ -31,7 +31,7 @@ impl Default for SolverOptions {
     }
 }
 
-/// What the solver found.
+/// The result of a solve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Summary<const N: usize> {
     /// The unknowns.
@@ -44,18 +44,18 @@ pub(crate) struct Summary<const N: usize> {
 
 /// Damping never falls below this share, so that a singular `JᵀJ` stays solvable.
 const LEAST_DAMPING: f64 = 1e-9;
-/// Added to the diagonal where an unknown has no effect at all.
+/// Added to the diagonal, for unknowns that have no effect.
 const NO_EFFECT: f64 = 1e-12;
 /// Beyond this damping a step is shorter than rounding.
 const MOST_DAMPING: f64 = 1e12;
 
-/// Lowers the sum of squares from `start` on.
+/// Minimizes the sum of squares from `start`.
 ///
 /// # Source
 ///
-/// `levenberg`, `marquardt`; bounds by an active set: an unknown at a bound that the gradient
-/// presses against is left out, one that a step would carry over a bound is set on it and the step
-/// of the others solved again.
+/// `levenberg`, `marquardt`; bounds by an active set: an unknown at a bound is fixed if the descent
+/// direction points outward, and an unknown that a step would carry across a bound is set to it and
+/// the step of the others solved again.
 pub(crate) fn solve<const M: usize, const N: usize>(
     problem: &impl Residuals<M, N>,
     start: [f64; N],
@@ -76,8 +76,8 @@ pub(crate) fn solve<const M: usize, const N: usize>(
         let next = here.step(free, &bounds, damping);
         let predicted = here.cost - here.predicted_cost(&next);
         if predicted <= 1e-9 * here.cost {
-            // Several unknowns set on their bounds at once can leave no descent: a shorter step
-            // can, and costs no evaluation.
+            // If several unknowns were set to their bounds at once, the rest may not descend. A
+            // shorter step may, and costs no evaluation.
             damping = (damping * 10.0).max(1e-3);
             continue;
         }
@@ -95,7 +95,7 @@ pub(crate) fn solve<const M: usize, const N: usize>(
     Summary { x: here.x, norm: here.cost.sqrt(), evaluations }
 }
 
-/// The damping after an accepted step whose gain was this share of what was predicted.
+/// The damping after an accepted step; `gain` is the actual over the predicted decrease of the cost.
 fn adapt(damping: f64, gain: f64) -> f64 {
     let factor = match gain {
         g if g > 0.75 => 0.1,
@@ -106,7 +106,7 @@ fn adapt(damping: f64, gain: f64) -> f64 {
     (damping * factor).max(LEAST_DAMPING)
 }
 
-/// Where the solver is.
+/// The problem evaluated at `x`.
 struct Point<const M: usize, const N: usize> {
     x: [f64; N],
     residuals: [f64; M],
@@ -118,12 +118,12 @@ impl<const M: usize, const N: usize> Point<M, N> {
     fn at(problem: &impl Residuals<M, N>, x: [f64; N]) -> Self {
         let (residuals, jacobian) = problem.eval(&x);
         let cost: f64 = residuals.iter().map(|r| r * r).sum();
-        // What is not a number must not look like progress.
+        // NaN must not look like progress.
         let cost = if cost.is_nan() { f64::INFINITY } else { cost };
         Self { x, residuals, jacobian, cost }
     }
 
-    /// The unknowns that no bound holds back.
+    /// Which unknowns can move without leaving their bounds.
     fn free(&self, bounds: &[[f64; 2]; N]) -> [bool; N] {
         std::array::from_fn(|v| {
             let slope: f64 = (0..M).map(|i| self.jacobian[i][v] * self.residuals[i]).sum();
@@ -132,7 +132,7 @@ impl<const M: usize, const N: usize> Point<M, N> {
         })
     }
 
-    /// Where the damped step of the free unknowns leads, inside the bounds.
+    /// The unknowns after the damped step of the free ones, within the bounds.
     fn step(&self, free: [bool; N], bounds: &[[f64; 2]; N], damping: f64) -> [f64; N] {
         let mut moving = free;
         let mut next = self.x;
@@ -158,8 +158,8 @@ impl<const M: usize, const N: usize> Point<M, N> {
         }
     }
 
-    /// Solves `(JᵀJ + damping·diag)·step = −Jᵀr` for the moving unknowns, where r already holds
-    /// what the others have moved; `None` if nothing moves.
+    /// Solves `(JᵀJ + damping·diag)·step = −Jᵀr` for the moving unknowns, where r includes the moves of
+    /// the others; `None` if nothing moves.
     fn damped_step(&self, moving: [bool; N], next: &[f64; N], damping: f64) -> Option<[f64; N]> {
         if !moving.contains(&true) {
             return None;
@@ -195,8 +195,8 @@ impl<const M: usize, const N: usize> Point<M, N> {
     }
 }
 
-/// Solves a symmetric positive definite system given by its lower triangle, as L·D·Lᵀ; `None`
-/// where it is not.
+/// Solves a symmetric system given by its lower triangle, by L·D·Lᵀ; `None` if it is not positive
+/// definite.
 #[inline(always)]
 pub(crate) fn solve_positive<const N: usize>(
     mut a: [[f64; N]; N],
@@ -280,17 +280,17 @@ mod tests {
     }
 
     #[test]
-    fn a_bound_across_the_valley_is_kept_and_the_best_point_on_it_found() {
+    fn the_best_point_on_a_bound_across_the_valley_is_found() {
         let valley = Valley { bounds: [[-5.0, 0.5], [-5.0, 5.0]] };
         let found = solve(&valley, [-1.2, 1.0], &SolverOptions::default());
-        // It stops because nothing is left to gain, not because it has no steps left.
+        // It stops because it converged, not at the step limit.
         let SolverOptions { norm_reached, step_limit, .. } = SolverOptions::default();
         assert!(found.norm > norm_reached && found.evaluations < step_limit);
         assert!((found.x[0] - 0.5).abs() < 1e-9 && (found.x[1] - 0.25).abs() < 1e-4);
     }
 
     #[test]
-    fn a_start_outside_is_brought_inside() {
+    fn a_start_outside_the_bounds_is_moved_inside() {
         let valley = Valley { bounds: [[2.0, 3.0], [2.0, 3.0]] };
         let found = solve(&valley, [-10.0, 10.0], &SolverOptions::default());
         assert!(found.x.iter().all(|v| (2.0..=3.0).contains(v)), "{found:?}");

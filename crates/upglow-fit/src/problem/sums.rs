@@ -1,4 +1,4 @@
-//! The sums over wavelength behind every residual, with their derivatives.
+//! Sums over wavelength for residuals and their derivatives.
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, dispatch, f64x4};
@@ -7,13 +7,13 @@ use upglow_color::Xyz;
 
 use super::parabola::{Parabola, scaled};
 
-/// Samples of one curve at the wavelengths that the observer sees, padded to whole vectors.
+/// Samples of a curve at the visible wavelengths, padded to whole vectors.
 pub(crate) type Lanes = [f64; LANES];
 
 /// 360, 365 … 830 nm are 95 samples of the 5 nm grid.
 const LANES: usize = 96;
-/// How many sums run side by side. It is the same on every machine, and no product is fused with a
-/// sum, so the bits of a result are the same too.
+/// Partial sums per sum. The number is the same on every machine, and no product is fused with a sum,
+/// so results have the same bits everywhere.
 const WIDTH: usize = 4;
 
 /// Weights and wavelengths of the sums.
@@ -26,14 +26,14 @@ pub(crate) struct Sums {
     simd_level: Level,
 }
 
-/// What a reflectance shows through an absorber, and derivatives.
+/// The color of a reflectance behind an absorber, and derivatives.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Reflected<const K: usize> {
     /// ∫ w·(1 − absorbed)·r.
     pub(crate) color: Xyz,
-    /// Derivatives of the color by the parabola's coefficients, `[coefficient]`.
+    /// Derivatives of the color with respect to the parabola's coefficients.
     pub(crate) by_parabola: [Xyz; 3],
-    /// ∫ w·other·r for each of the other curves.
+    /// ∫ w·other·r for each other curve.
     pub(crate) seen_by: [Xyz; K],
 }
 
@@ -92,8 +92,8 @@ impl Sums {
         Xyz(self.weights.each_ref().map(|w| (0..LANES).map(|i| w[i] * curve(i)).sum()))
     }
 
-    /// The color of a reflectance behind an absorber that takes `absorbed` at each wavelength, and
-    /// what each of `others` sees of the reflectance.
+    /// The color of a reflectance behind an absorber that takes the share `absorbed`, and the color
+    /// that is lost to each of `others` at concentration 1.
     pub(crate) fn reflect<const K: usize>(
         &self,
         parabola: Parabola,
@@ -106,7 +106,7 @@ impl Sums {
         ))
     }
 
-    /// [`Sums::reflect`], compiled once for each kind of vectors.
+    /// [`Sums::reflect`], compiled once for each instruction set.
     #[inline(always)]
     fn reflect_in_vectors<S: Simd, const K: usize>(
         &self,
@@ -158,10 +158,10 @@ fn total<S: Simd>(lanes: f64x4<S>) -> f64 {
     (lanes[0] + lanes[1]) + (lanes[2] + lanes[3])
 }
 
-/// Nothing absorbed anywhere.
+/// No absorption.
 pub(crate) const CLEAR: Lanes = [0.0; LANES];
 
-/// `f` at each lane number.
+/// `f` of each lane's index.
 pub(crate) fn lanes_from(f: impl Fn(usize) -> f64) -> Lanes {
     std::array::from_fn(f)
 }

@@ -1,4 +1,4 @@
-//! What all fits under one contract, with one model, share.
+//! What all fits under one contract, with one model, have in common.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -9,7 +9,7 @@ use super::starts::StartTable;
 use crate::problem::Shape;
 use crate::problem::sums::{CLEAR, Lanes, Sums, lanes_from};
 
-/// The sums, the starts and the limits of fits, and how much work they were.
+/// The sums, starts and limits of fits, and the count of their evaluations.
 #[derive(Debug)]
 pub(crate) struct Context {
     pub(crate) model: ModelOnGrid,
@@ -17,7 +17,8 @@ pub(crate) struct Context {
     pub(crate) sums: Sums,
     pub(crate) starts: StartTable,
     pub(crate) dye_lanes: Vec<Lanes>,
-    evaluations: AtomicU64,
+    /// How often residuals and derivatives were evaluated so far, in all fits.
+    pub(crate) evaluations: AtomicU64,
 }
 
 impl Context {
@@ -33,11 +34,6 @@ impl Context {
         let starts = StartTable::new(&model, &sums, &dye_lanes, slope_limit_per_nm);
         let evaluations = AtomicU64::new(0);
         Self { model, slope_limit_per_nm, sums, starts, dye_lanes, evaluations }
-    }
-
-    /// How often residuals and derivatives were evaluated so far, in all fits.
-    pub(crate) fn evaluations(&self) -> u64 {
-        self.evaluations.load(Ordering::Relaxed)
     }
 
     pub(crate) fn count(&self, evaluations: usize) {

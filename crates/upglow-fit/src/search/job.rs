@@ -1,26 +1,26 @@
-//! One color to be shown: what every way of searching for its material shares.
+//! One target color: what all search methods have in common.
 
-use upglow::{AnalyticModel, DyeModel, Edge, Fluorescence, Model, Sigmoid};
+use upglow::{Edge, Fluorescence, Model, Sigmoid};
 use upglow_color::{Goal, Metric};
 
 use super::context::Context;
 use crate::fit::{Fit, Start};
 use crate::problem::parabola::{MIDDLE_NM, UNIT_NM};
-use crate::problem::solver::{Residuals, Summary};
+use crate::problem::solver::{Residuals, SolverOptions, Summary, solve};
 use crate::problem::{BellProblem, DyeProblem, PassiveProblem, Shape};
 
-/// A color, and what the search for its material needs.
+/// A target color, and what the search for its material needs.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Job<'c> {
     pub(crate) context: &'c Context,
     pub(crate) goal: Goal,
 }
 
-/// A color this near to a multiple of white, in XYZ, is gray: rounding only.
+/// A color this near to a multiple of white, in XYZ, is a gray: rounding only.
 const GRAY: f64 = 1e-9;
 
 impl Job<'_> {
-    /// A flat reflectance where the color is a gray no brighter than white.
+    /// A flat reflectance if the color is a gray no brighter than white.
     pub(crate) fn gray(&self) -> Option<Fit> {
         let white = self.context.model.colorimetry().white();
         let color = self.goal.xyz();
@@ -30,11 +30,11 @@ impl Job<'_> {
         if off > GRAY || !(0.0..=1.0).contains(&value) {
             return None;
         }
-        Some(self.judge(Sigmoid::flat(value).to_edge(MIDDLE_NM), Fluorescence::None))
+        Some(self.measured(Sigmoid::flat(value).to_edge(MIDDLE_NM), Fluorescence::None))
     }
 
-    /// The fit that a material is, with its color differences.
-    pub(crate) fn judge(&self, reflectance: Edge, fluorescence: Fluorescence) -> Fit {
+    /// A material as a fit, with its color differences.
+    pub(crate) fn measured(&self, reflectance: Edge, fluorescence: Fluorescence) -> Fit {
         let fluorescence = match fluorescence.concentration() {
             c if c > 0.0 => fluorescence,
             _ => Fluorescence::None,
@@ -49,29 +49,32 @@ impl Job<'_> {
         Fit { reflectance, fluorescence, distance, de2000, lab }
     }
 
-    /// The coordinates in which the slope limit is a bound.
+    /// The coordinates in which the slope limit is a bound on one unknown.
     pub(crate) fn edge_shape(&self) -> Shape {
         Shape::Edge { slope_limit_per_nm: self.context.slope_limit_per_nm }
     }
 
-    /// Looks for a material like `start` in the coordinates `shape`, by `solve`.
+    /// Fits a material with `solve` from `start`, in the coordinates `shape`.
     pub(crate) fn follow(&self, start: Start, shape: Shape, solve: &impl Solve) -> Fit {
         let numbers = shape.numbers(start.reflectance);
         let [s0, s1, s2] = numbers;
+        let Self { goal, context: Context { model, sums, .. } } = *self;
         match (start.fluorescence, self.context.model.model()) {
             (Fluorescence::Dyes { first, weight, concentration }, Model::Dyes(dyes)) => {
-                let problem = self.dye_problem(dyes, first, shape);
+                let lanes = &self.context.dye_lanes;
+                let absorption = [&lanes[first], &lanes[dyes.partner(first)]];
+                let problem = DyeProblem { sums, goal, shape, model, dyes, first, absorption };
                 let x = [s0, s1, s2, concentration, weight];
                 let [s0, s1, s2, concentration, weight] = self.counted(solve.solve(&problem, x));
                 let fluorescence = Fluorescence::Dyes { first, weight, concentration };
-                self.judge(shape.edge([s0, s1, s2]), fluorescence)
+                self.measured(shape.edge([s0, s1, s2]), fluorescence)
             }
             (
                 Fluorescence::Analytic { emission_peak_nm, stokes_shift_nm, concentration },
                 Model::Analytic(bells),
             ) => {
                 let [peak, shift] = [emission_peak_nm, stokes_shift_nm].map(|v| v / UNIT_NM);
-                let problem = self.bell_problem(bells, shape);
+                let problem = BellProblem { sums, goal, shape, model, bells };
                 let x = [s0, s1, s2, concentration, peak, shift];
                 let [s0, s1, s2, concentration, peak, shift] =
                     self.counted(solve.solve(&problem, x));
@@ -80,46 +83,35 @@ impl Job<'_> {
                     stokes_shift_nm: shift * UNIT_NM,
                     concentration,
                 };
-                self.judge(shape.edge([s0, s1, s2]), fluorescence)
+                self.measured(shape.edge([s0, s1, s2]), fluorescence)
             }
             _ => {
                 let x = self.counted(solve.solve(&self.passive_problem(shape), numbers));
-                self.judge(shape.edge(x), Fluorescence::None)
+                self.measured(shape.edge(x), Fluorescence::None)
             }
         }
     }
 
-    /// What the solver found, with its evaluations added to the fitter's.
+    /// The solution; adds its evaluations to the fitter's count.
     fn counted<const N: usize>(&self, found: Summary<N>) -> [f64; N] {
         self.context.count(found.evaluations);
         found.x
     }
 
     pub(crate) fn passive_problem(&self, shape: Shape) -> PassiveProblem<'_> {
-        PassiveProblem { sums: &self.context.sums, goal: self.goal, shape }
-    }
-
-    fn dye_problem<'a>(&'a self, dyes: &'a DyeModel, first: usize, shape: Shape) -> DyeProblem<'a> {
-        let lanes = &self.context.dye_lanes;
-        DyeProblem {
-            sums: &self.context.sums,
-            goal: self.goal,
-            shape,
-            model: &self.context.model,
-            dyes,
-            first,
-            absorption: [&lanes[first], &lanes[dyes.partner(first)]],
-        }
-    }
-
-    fn bell_problem<'a>(&'a self, bells: &'a AnalyticModel, shape: Shape) -> BellProblem<'a> {
-        let model = &self.context.model;
-        BellProblem { sums: &self.context.sums, goal: self.goal, shape, model, bells }
+        PassiveProblem { sums: &self.context.sums, goal: self.goal, shape, exposure: 1.0 }
     }
 }
 
-/// A way to solve any of the problems of a color.
+/// A solver for the problems of a color.
 pub(crate) trait Solve {
-    /// What it finds from `start`.
+    /// The solution from `start`.
     fn solve<const N: usize>(&self, problem: &impl Residuals<3, N>, start: [f64; N]) -> Summary<N>;
+}
+
+/// Minimizes the distance alone.
+impl Solve for SolverOptions {
+    fn solve<const N: usize>(&self, problem: &impl Residuals<3, N>, start: [f64; N]) -> Summary<N> {
+        solve(problem, start, self)
+    }
 }

@@ -1,10 +1,10 @@
-//! The way of König et al. 2020 to the material of a color: from gray, then from the neighbors,
-//! through all pairs of dyes.
+//! The search of König et al. 2020: from gray, then from the neighbors' materials, with each pair of
+//! dyes.
 //!
-//! What the paper leaves open is decided here: which unknowns start where, how the slope limit acts
-//! on coefficients, and that a color that reflectance shows gets no fluorescence.
+//! The paper does not say where the unknowns start, how the slope limit applies to coefficients, and
+//! whether a color that a reflectance matches gets fluorescence; here it does not.
 
-use upglow::{DyeModel, Edge, Fluorescence, Model, Sigmoid};
+use upglow::{Edge, Fluorescence, Model, Sigmoid};
 use upglow_color::Metric;
 
 use super::job::{Job, Solve};
@@ -13,7 +13,7 @@ use crate::problem::parabola::MIDDLE_NM;
 use crate::problem::solver::{Residuals, SolverOptions, Summary, solve};
 use crate::problem::{LimitedProblem, Shape};
 
-/// What the solver moves for a reflectance.
+/// The unknowns of a reflectance.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Parameters {
     /// c0, c1, c2; the slope limit is a penalty.
@@ -22,12 +22,12 @@ pub(crate) enum Parameters {
     Features,
 }
 
-/// Where fluorescence starts: half strength, half of each dye, the middle of the bells' ranges.
+/// Start of fluorescence: half concentration, half of each dye, the middle of the bells' ranges.
 const START_CONCENTRATION: f64 = 0.5;
 const START_WEIGHT: f64 = 0.5;
 const START_BELLS_NM: [f64; 2] = [555.0, 65.0];
 
-/// Where features start: U- and n-shaped around the middle, half as steep as the limit.
+/// Start of features: a valley and a peak around the middle, half as steep as the limit.
 const START_WIDTH_NM: f64 = 100.0;
 
 /// Evaluations of one solve.
@@ -43,7 +43,7 @@ impl Job<'_> {
         self.best_variant(parameters, passive, passive)
     }
 
-    /// The best of `known` and what `known` and the neighbors lead to.
+    /// The best of `known` and of the fits that start from `known` and from the neighbors.
     pub(crate) fn konig2020_again(
         &self,
         parameters: Parameters,
@@ -60,7 +60,7 @@ impl Job<'_> {
         best
     }
 
-    /// Reflectance alone. CIEDE2000 has no slope to follow at gray: there CIELAB goes first.
+    /// Reflectance alone. CIEDE2000 has no derivative at gray, so a fit by CIELAB goes first.
     fn passive(&self, parameters: Parameters) -> Fit {
         let gray = Sigmoid::flat(0.5).to_edge(MIDDLE_NM);
         let slope_per_nm = self.context.slope_limit_per_nm / 2.0;
@@ -79,7 +79,7 @@ impl Job<'_> {
         fits.min_by(|a, b| a.distance.total_cmp(&b.distance)).expect("there is a start")
     }
 
-    /// The best of `known` and of what `from` leads to, with each pair of dyes.
+    /// The best of `known` and of the fits that start from `from` with each pair of dyes.
     fn best_variant(&self, parameters: Parameters, from: Fit, known: Fit) -> Fit {
         let mut best = known;
         for fluorescence in variants(self.context.model.model(), from.fluorescence) {
@@ -104,12 +104,12 @@ impl Job<'_> {
             }
             Parameters::Features => {
                 let sign = if start.reflectance.level >= 0.0 { 1.0 } else { -1.0 };
-                self.follow(start, Shape::Features { slope_limit_per_nm, sign }, &Bounded)
+                self.follow(start, Shape::Features { slope_limit_per_nm, sign }, &options())
             }
         }
     }
 
-    /// A reflectance that the penalty left too steep, no steeper than the limit.
+    /// A fit with its slope reduced to the limit, which the penalty may let it exceed.
     fn held_at_limit(&self, fit: Fit) -> Fit {
         let limit = self.context.slope_limit_per_nm;
         let Edge { slope_per_nm, .. } = fit.reflectance;
@@ -117,11 +117,11 @@ impl Job<'_> {
             return fit;
         }
         let slope_per_nm = slope_per_nm.clamp(-limit, limit);
-        self.judge(Edge { slope_per_nm, ..fit.reflectance }, fit.fluorescence)
+        self.measured(Edge { slope_per_nm, ..fit.reflectance }, fit.fluorescence)
     }
 }
 
-/// A shape around the middle; `signed_width_nm` is positive for valleys.
+/// A valley, or for a negative width a peak, around the middle.
 fn soft_shape(signed_width_nm: f64, slope_per_nm: f64) -> Edge {
     let features = upglow::Features {
         shift_nm: MIDDLE_NM,
@@ -135,7 +135,14 @@ fn soft_shape(signed_width_nm: f64, slope_per_nm: f64) -> Edge {
 fn variants(model: &Model, fluorescence: Fluorescence) -> Vec<Fluorescence> {
     match model {
         Model::Reflectance => vec![Fluorescence::None],
-        Model::Dyes(dyes) => dye_variants(dyes, fluorescence),
+        Model::Dyes(dyes) => {
+            let (weight, concentration) = match fluorescence {
+                Fluorescence::Dyes { weight, concentration, .. } => (weight, concentration),
+                _ => (START_WEIGHT, START_CONCENTRATION),
+            };
+            let pair = |first| Fluorescence::Dyes { first, weight, concentration };
+            (0..dyes.pairs()).map(pair).collect()
+        }
         Model::Analytic(_) => match fluorescence {
             Fluorescence::Analytic { .. } => vec![fluorescence],
             _ => {
@@ -147,14 +154,6 @@ fn variants(model: &Model, fluorescence: Fluorescence) -> Vec<Fluorescence> {
     }
 }
 
-fn dye_variants(dyes: &DyeModel, fluorescence: Fluorescence) -> Vec<Fluorescence> {
-    let (weight, concentration) = match fluorescence {
-        Fluorescence::Dyes { weight, concentration, .. } => (weight, concentration),
-        _ => (START_WEIGHT, START_CONCENTRATION),
-    };
-    (0..dyes.pairs()).map(|first| Fluorescence::Dyes { first, weight, concentration }).collect()
-}
-
 /// Coefficients, with the slope limit as a penalty.
 struct Penalized {
     slope_limit_per_nm: f64,
@@ -164,15 +163,6 @@ impl Solve for Penalized {
     fn solve<const N: usize>(&self, problem: &impl Residuals<3, N>, start: [f64; N]) -> Summary<N> {
         let limited = LimitedProblem { problem, slope_limit_per_nm: self.slope_limit_per_nm };
         solve(&limited, start, &options())
-    }
-}
-
-/// Features, with the slope limit as a bound.
-struct Bounded;
-
-impl Solve for Bounded {
-    fn solve<const N: usize>(&self, problem: &impl Residuals<3, N>, start: [f64; N]) -> Summary<N> {
-        solve(problem, start, &options())
     }
 }
 

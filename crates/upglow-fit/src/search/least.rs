@@ -1,23 +1,22 @@
-//! The least fluorescence that still shows a color.
+//! The least fluorescence that still matches a color.
 
 use super::job::Solve;
 use crate::problem::solver::{Residuals, SolverOptions, Summary, solve};
 use crate::problem::{CONCENTRATION, LeastProblem};
 
-/// What a concentration of 1 counts in the search for the least one, in units of the metric.
-/// Larger leaves the color earlier, smaller takes more rounds.
+/// The cost of a concentration of 1, in units of the metric. Larger loses the color sooner; smaller takes
+/// more rounds.
 const CONCENTRATION_WEIGHT: f64 = 3.0;
 /// Rounds of that search.
 const LEAST_ROUNDS: usize = 12;
 /// Evaluations of its first round and of each later one.
 const LEAST_STEPS: [usize; 2] = [40, 8];
-/// It ends when a round is this near to the color and changes the concentration by less than this.
+/// The search ends when a round is this near to the color and changes the concentration by less.
 const LEAST_SETTLED: (f64, f64) = (3e-3, 2e-3);
 
-/// Keeps the color and lowers the concentration.
-///
-/// The residuals' squares plus the weighted concentration's, with multipliers that take the rest
-/// of the residuals away round by round; then the color alone.
+/// Keeps the color and lowers the concentration: minimizes the squares of the residuals and of the
+/// weighted concentration, with multipliers that drive the residuals to zero over several rounds; then
+/// fits the color alone.
 ///
 /// # Source
 ///

@@ -1,4 +1,4 @@
-//! Where fits start: a table of materials at the slope limit, and the ones nearest to a color.
+//! Where fits start: a table of materials, most at the slope limit, and those nearest to a color.
 
 use std::ops::Range;
 
@@ -12,8 +12,8 @@ use crate::problem::Shape;
 use crate::problem::parabola::MIDDLE_NM;
 use crate::problem::sums::{Lanes, Sums};
 
-/// The start materials and their colors, sorted into buckets of like fluorescence, or of like shape
-/// where nothing fluoresces.
+/// The start materials and their colors, in buckets of similar fluorescence, or of similar shape for
+/// reflectances.
 #[derive(Clone, Debug)]
 pub(crate) struct StartTable {
     shapes: Vec<Edge>,
@@ -21,7 +21,7 @@ pub(crate) struct StartTable {
     /// CIELAB of each entry, `[L a b][entry]`.
     lab: [Vec<f32>; 3],
     simd_level: Level,
-    /// First entry of each bucket, and the end; all multiples of [`WIDTH`].
+    /// First entry of each bucket, and the end of the last; all multiples of [`WIDTH`].
     buckets: Vec<usize>,
 }
 
@@ -31,35 +31,37 @@ struct Entry {
     fluorescence: Fluorescence,
 }
 
-/// Steepest points of the start shapes, nm: first, last, step. A finer step finds no better
-/// materials, one of 40 nm loses some.
+/// Steepest points of the start shapes, nm: first, last, step. A finer step finds no better materials;
+/// one of 40 nm misses some.
 const EDGES_NM: [u32; 3] = [390, 710, 20];
 /// Their widths, nm, from a spike to a straight edge.
 const WIDTHS_NM: [f64; 6] = [4.0, 10.0, 25.0, 60.0, 150.0, 1000.0];
-/// Start slopes are the limit, and thirds of it down to this, 1/nm: softer colors need no limit.
+/// Start slopes are the limit, a third of it, and so on down to this, 1/nm: fits of softer ones succeed
+/// without a limit.
 const SOFTEST_PER_NM: f64 = 0.005;
 /// Weights of the second dye.
 const WEIGHTS: [f64; 3] = [0.0, 0.5, 1.0];
-/// Concentrations for dyes of a thin solution, and for dense pigments, which are wide.
+/// Concentrations for dyes in a thin solution, and for dense pigments, whose absorption is wide.
 const CONCENTRATIONS: &[f64] = &[0.45, 1.0];
 const DENSE_CONCENTRATIONS: &[f64] = &[0.2, 0.5, 1.0];
-/// Into how many buckets of like shape the starts without fluorescence go.
+/// Number of buckets for starts without fluorescence.
 const PASSIVE_BUCKETS: usize = 24;
 /// Emission peaks and Stokes shifts of bells, nm.
 const PEAKS_NM: [f64; 11] =
     [400.0, 431.0, 462.0, 493.0, 524.0, 555.0, 586.0, 617.0, 648.0, 679.0, 710.0];
 const SHIFTS_NM: [f64; 4] = [15.0, 40.0, 75.0, 110.0];
-/// A bucket of like fluorescences, and what each takes from a reflectance and adds to its color.
+
+/// A start fluorescence, its bucket, and how it changes the color of a reflectance.
 struct Variant {
     bucket: usize,
     fluorescence: Fluorescence,
-    /// Which curves absorb, with their shares of the light.
+    /// Indices of the absorption curves, with their concentrations.
     absorbers: [(usize, f64); 2],
     emitted: Xyz,
 }
 
 impl StartTable {
-    /// The table for one model and light; `dye_lanes` are what its dyes absorb.
+    /// The table for one model and light; `dye_lanes` are the absorptions of its dyes.
     pub(crate) fn new(
         model: &ModelOnGrid,
         sums: &Sums,
@@ -102,7 +104,7 @@ impl StartTable {
         table
     }
 
-    /// Adds a bucket and fills it up to whole vectors with entries that are near to nothing.
+    /// Adds a bucket, padded to whole vectors with entries at an infinite distance.
     fn add_bucket(&mut self, bucket: &[(usize, Entry, Lab)]) {
         const NOWHERE: Lab = Lab { l: f64::INFINITY, a: 0.0, b: 0.0 };
         let filler = (0, Entry { shape: 0, fluorescence: Fluorescence::None }, NOWHERE);
@@ -118,8 +120,8 @@ impl StartTable {
 
     /// The nearest start of each bucket, nearest first.
     ///
-    /// Near means CIEDE2000 as it is around the goal, a quadratic form: that finds the same starts
-    /// as the full formula and costs a tenth.
+    /// Distance is CIEDE2000 linearized around the goal, a quadratic form: that finds the same starts
+    /// as the full formula at a tenth of the cost.
     pub(crate) fn nearest(&self, goal: &Goal) -> Vec<Start> {
         let form = Form::around(goal);
         let mut best: Vec<(f32, usize)> = Vec::with_capacity(self.buckets.len());
@@ -135,7 +137,7 @@ impl StartTable {
         best.into_iter().map(|(_, index)| self.start(index)).collect()
     }
 
-    /// The nearest few starts of each bucket, by true CIEDE2000.
+    /// The nearest few starts of each bucket, by exact CIEDE2000.
     pub(crate) fn nearest_of_each(&self, goal: &Goal, count: usize) -> Vec<Start> {
         let distance = |index: usize| {
             let [l, a, b] = self.lab.each_ref().map(|v| f64::from(v[index]));
@@ -157,7 +159,7 @@ impl StartTable {
         Start { reflectance: self.shapes[shape as usize], fluorescence }
     }
 
-    /// The entry of a bucket where the form is least, and the form there; the first such entry.
+    /// The least value of the form in a bucket, and the first entry that has it.
     #[inline(always)]
     fn nearest_of(&self, bucket: Range<usize>, form: &Form) -> Option<(f32, usize)> {
         let [l, a, b] = self.lab.each_ref().map(|v| v[bucket.clone()].as_chunks::<WIDTH>().0);
@@ -179,15 +181,15 @@ impl StartTable {
     }
 }
 
-/// How many entries are looked at side by side.
+/// How many entries are compared in parallel.
 const WIDTH: usize = 16;
 
-/// CIEDE2000 squared as it is around a color: a quadratic form in Lab.
+/// CIEDE2000 squared, linearized around a color: a quadratic form in Lab.
 struct Form {
     center: [f32; 3],
-    /// Derivative of the first residual by L.
+    /// Derivative of the first residual with respect to L.
     by_l: f32,
-    /// Derivatives of the second and third by a and b.
+    /// Derivatives of the second and third with respect to a and b.
     by_ab: [[f32; 2]; 2],
 }
 
@@ -220,7 +222,7 @@ impl Variant {
     }
 }
 
-/// Edges over the visible range, rising and falling, of peaks and valleys of each width.
+/// Rising and falling edges over the visible range, of peaks and valleys of each width.
 fn shapes(slope_limit_per_nm: f64) -> Vec<Edge> {
     let mut shapes = Vec::new();
     let mut slope = slope_limit_per_nm;
@@ -239,15 +241,15 @@ fn shapes(slope_limit_per_nm: f64) -> Vec<Edge> {
     }
 }
 
-/// `signed_width_nm` is positive for valleys.
+/// Adds a shape for each edge; `signed_width_nm` is positive for valleys.
 fn add_shapes(shapes: &mut Vec<Edge>, slope_per_nm: f64, signed_width_nm: f64, falling: bool) {
     let level = level_at(slope_per_nm, signed_width_nm);
     let direction = if falling { -1.0 } else { 1.0 };
     let [first, last, step] = EDGES_NM;
     for edge_nm in (first..=last).step_by(step as usize).map(f64::from) {
-        // A rising edge of a valley has the valley's other edge below it.
+        // The other edge of a valley is at shorter wavelengths for a rising edge.
         let other_nm = edge_nm - 2.0 * signed_width_nm * direction;
-        // Where the other edge is in range too, the other direction lists the same shape.
+        // If that is in range too, the other direction adds the same shape.
         if falling && (f64::from(first)..=f64::from(last)).contains(&other_nm) {
             continue;
         }
@@ -256,25 +258,24 @@ fn add_shapes(shapes: &mut Vec<Edge>, slope_per_nm: f64, signed_width_nm: f64, f
     }
 }
 
-/// The level P of a steepest point this far from the extremum: P√(1 + P²) = 1 / (6·s·w).
+/// The level P of a steepest point at this distance from the extremum: P√(1 + P²) = 1 / (6·s·w).
 fn level_at(slope_per_nm: f64, signed_width_nm: f64) -> f64 {
     let product = 1.0 / (6.0 * slope_per_nm * signed_width_nm);
     let square = ((1.0 + 4.0 * product * product).sqrt() - 1.0) / 2.0;
     square.sqrt().copysign(product)
 }
 
-/// The variants, and the curves that their absorbers count where those are not dyes.
+/// The variants, and their absorption curves if these are not those of dyes.
 fn variants(model: &ModelOnGrid, sums: &Sums) -> (Vec<Variant>, Vec<Lanes>) {
     match model.model() {
-        Model::Reflectance => (vec![passive()], Vec::new()),
+        Model::Reflectance => {
+            let (absorbers, emitted) = ([(0, 0.0); 2], Xyz::default());
+            let fluorescence = Fluorescence::None;
+            (vec![Variant { bucket: 0, fluorescence, absorbers, emitted }], Vec::new())
+        }
         Model::Dyes(dyes) => (dye_variants(model, dyes), Vec::new()),
         Model::Analytic(bells) => bell_variants(model, bells, sums),
     }
-}
-
-fn passive() -> Variant {
-    let fluorescence = Fluorescence::None;
-    Variant { bucket: 0, fluorescence, absorbers: [(0, 0.0); 2], emitted: Xyz::default() }
 }
 
 fn dye_variants(model: &ModelOnGrid, dyes: &DyeModel) -> Vec<Variant> {
