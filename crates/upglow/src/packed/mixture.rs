@@ -51,6 +51,23 @@ macro_rules! in_vectors {
     };
 }
 
+/// [`with_baseline`] with the mixing as a constant, so that each mixing is compiled by itself: chosen
+/// where it is used, it costs up to 7 % of an answer.
+macro_rules! with_rules {
+    ($mixture:ident, $simd:ident, $mixing:ident => $answer:expr) => {
+        with_baseline!($simd => match $mixture.model.mixing {
+            Mixing::Pooled => {
+                let $mixing = Mixing::Pooled;
+                $answer
+            }
+            Mixing::Separate => {
+                let $mixing = Mixing::Separate;
+                $answer
+            }
+        })
+    };
+}
+
 impl<'t> PackedMixture<'t> {
     #[inline(always)]
     pub(crate) fn new<S: Simd>(
@@ -253,13 +270,13 @@ impl<'t> PackedMixture<'t> {
 
     /// What each corner's lobes absorb of light at `lambda_nm`.
     #[inline(always)]
-    fn absorbed<S: Simd>(&self, simd: S, lambda_nm: f32) -> PerLobe<f32x4<S>> {
+    fn absorbed<S: Simd>(&self, simd: S, mixing: Mixing, lambda_nm: f32) -> PerLobe<f32x4<S>> {
         let none = f32x4::splat(simd, 0.0);
         match &self.model.model {
             Model::Dyes(_) if self.fluorescent => {
                 let PackedDyes { weight, concentration, .. } = self.corner_numbers(simd).into();
                 let pair = self.pairs(simd, &self.model.curves.absorption, lambda_nm);
-                self.model.mixing.absorbed(pair, concentration, weight)
+                mixing.absorbed(pair, concentration, weight)
             }
             Model::Analytic(_) if self.fluorescent => {
                 let PackedBells { concentration, absorption_nm, .. } =
@@ -273,8 +290,8 @@ impl<'t> PackedMixture<'t> {
 
     /// What each corner's lobes return of light at `in_nm`.
     #[inline(always)]
-    fn returned<S: Simd>(&self, simd: S, in_nm: f32) -> PerLobe<f32x4<S>> {
-        self.returned_of(simd, in_nm, self.absorbed(simd, in_nm))
+    fn returned<S: Simd>(&self, simd: S, mixing: Mixing, in_nm: f32) -> PerLobe<f32x4<S>> {
+        self.returned_of(simd, mixing, in_nm, self.absorbed(simd, mixing, in_nm))
     }
 
     /// What each corner's lobes return of what they absorbed at `in_nm`.
@@ -282,6 +299,7 @@ impl<'t> PackedMixture<'t> {
     fn returned_of<S: Simd>(
         &self,
         simd: S,
+        mixing: Mixing,
         in_nm: f32,
         [one, two]: PerLobe<f32x4<S>>,
     ) -> PerLobe<f32x4<S>> {
@@ -289,12 +307,12 @@ impl<'t> PackedMixture<'t> {
         match &self.model.model {
             Model::Dyes(dyes) if self.fluorescent => {
                 let accounting = dyes.options().accounting;
-                let yielded = self.per_lobe(simd, |dye| dye.quantum_yield);
+                let yielded = self.per_lobe(simd, mixing, |dye| dye.quantum_yield);
                 let means_nm = match accounting {
                     Accounting::Energy => [none; 2],
-                    Accounting::Photon => self.per_lobe(simd, |dye| dye.mean_emission_nm),
+                    Accounting::Photon => self.per_lobe(simd, mixing, |dye| dye.mean_emission_nm),
                 };
-                let second = match self.model.mixing {
+                let second = match mixing {
                     Mixing::Pooled => none,
                     Mixing::Separate => accounting.returned(two, yielded[1], nm, means_nm[1]),
                 };
@@ -311,13 +329,13 @@ impl<'t> PackedMixture<'t> {
 
     /// Where each corner's lobes give it back, 1/nm.
     #[inline(always)]
-    fn emission<S: Simd>(&self, simd: S, out_nm: f32) -> PerLobe<f32x4<S>> {
+    fn emission<S: Simd>(&self, simd: S, mixing: Mixing, out_nm: f32) -> PerLobe<f32x4<S>> {
         let none = f32x4::splat(simd, 0.0);
         match &self.model.model {
             Model::Dyes(_) if self.fluorescent => {
                 let PackedDyes { weight, .. } = self.corner_numbers(simd).into();
                 let pair = self.pairs(simd, &self.model.curves.emission, out_nm);
-                self.model.mixing.per_lobe(pair, weight)
+                mixing.per_lobe(pair, weight)
             }
             Model::Analytic(_) if self.fluorescent => {
                 let PackedBells { emission_nm, .. } = self.corner_numbers(simd).into();
@@ -334,44 +352,52 @@ impl<'t> PackedMixture<'t> {
     fn leaving<S: Simd>(
         &self,
         simd: S,
+        mixing: Mixing,
         out_nm: f32,
         emission: PerLobe<f32x4<S>>,
     ) -> Shares<f32x4<S>> {
-        let [one, two] = self.returned_totals(simd);
-        let weights = load(simd, &self.weights);
-        let elastic = self.reflectance_through(simd, out_nm, self.absorbed(simd, out_nm));
-        Shares { elastic, lobes: [weights * one * emission[0], weights * two * emission[1]] }
+        let elastic = self.reflectance_through(simd, out_nm, self.absorbed(simd, mixing, out_nm));
+        Shares { elastic, lobes: self.leaving_lobes(simd, mixing, emission) }
     }
 
-    /// What each corner's lobes return of light that is 1 at every wavelength, nm.
     #[inline(always)]
-    fn returned_totals<S: Simd>(&self, simd: S) -> PerLobe<f32x4<S>> {
+    fn leaving_lobes<S: Simd>(
+        &self,
+        simd: S,
+        mixing: Mixing,
+        [one, two]: PerLobe<f32x4<S>>,
+    ) -> PerLobe<f32x4<S>> {
         let none = f32x4::splat(simd, 0.0);
         if !self.fluorescent {
             return [none; 2];
         }
         let PackedDyes { weight, concentration, returned_nm, .. } =
             self.corner_numbers(simd).into();
-        match self.model.mixing {
-            Mixing::Pooled => [returned_nm, none],
-            Mixing::Separate => {
-                let [one, two] = self.model.mixing.concentrations(concentration, weight);
-                let [a, b] = self.dye_numbers(simd, |dye| dye.returned_nm);
-                [one * a, two * b]
-            }
+        let weights = load(simd, &self.weights);
+        // A second lobe of zeros would cost as much as a real one.
+        if mixing == Mixing::Pooled {
+            return [weights * returned_nm * one, none];
         }
+        let [first, second] = mixing.concentrations(concentration, weight);
+        let [a, b] = self.dye_numbers(simd, |dye| dye.returned_nm);
+        [weights * first * a * one, weights * second * b * two]
     }
 
     /// What the lobes return of light at `in_nm`, and what leaves of it.
     #[inline(always)]
-    fn arriving<S: Simd>(&self, simd: S, in_nm: f32) -> (PerLobe<f32x4<S>>, Shares<f32x4<S>>) {
-        let absorbed = self.absorbed(simd, in_nm);
-        let returned = self.returned_of(simd, in_nm, absorbed);
+    fn arriving<S: Simd>(
+        &self,
+        simd: S,
+        mixing: Mixing,
+        in_nm: f32,
+    ) -> (PerLobe<f32x4<S>>, Shares<f32x4<S>>) {
+        let absorbed = self.absorbed(simd, mixing, in_nm);
+        let returned = self.returned_of(simd, mixing, in_nm, absorbed);
         let elastic = self.reflectance_through(simd, in_nm, absorbed);
         let weights = load(simd, &self.weights);
         let mut lobes = [weights * returned[0], weights * returned[1]];
         if self.fluorescent && matches!(self.model.model, Model::Dyes(_)) {
-            let emitted = self.per_lobe(simd, |dye| dye.emitted);
+            let emitted = self.per_lobe(simd, mixing, |dye| dye.emitted);
             lobes = [lobes[0] * emitted[0], lobes[1] * emitted[1]];
         }
         (returned, Shares { elastic, lobes })
@@ -431,9 +457,14 @@ impl<'t> PackedMixture<'t> {
 
     /// A number of each corner's lobes from those of its dyes.
     #[inline(always)]
-    fn per_lobe<S: Simd>(&self, simd: S, number: impl Fn(&DyeNumbers) -> f32) -> PerLobe<f32x4<S>> {
+    fn per_lobe<S: Simd>(
+        &self,
+        simd: S,
+        mixing: Mixing,
+        number: impl Fn(&DyeNumbers) -> f32,
+    ) -> PerLobe<f32x4<S>> {
         let PackedDyes { weight, .. } = PackedDyes::from(self.fluorescence.each_ref());
-        self.model.mixing.per_lobe(self.dye_numbers(simd, number), load(simd, weight))
+        mixing.per_lobe(self.dye_numbers(simd, number), load(simd, weight))
     }
 }
 
@@ -447,8 +478,8 @@ impl Bispectral for PackedMixture<'_> {
 
     #[inline]
     fn reflectance(&self, lambda_nm: f32) -> f32 {
-        with_baseline!(simd => {
-            self.reflectance_through(simd, lambda_nm, self.absorbed(simd, lambda_nm))
+        with_rules!(self, simd, mixing => {
+            self.reflectance_through(simd, lambda_nm, self.absorbed(simd, mixing, lambda_nm))
         })
     }
 
@@ -469,16 +500,16 @@ impl Bispectral for PackedMixture<'_> {
         if !self.fluorescent {
             return 0.0;
         }
-        with_baseline!(simd => {
-            self.moved(simd, self.returned(simd, in_nm), self.emission(simd, out_nm))
+        with_rules!(self, simd, mixing => {
+            self.moved(simd, self.returned(simd, mixing, in_nm), self.emission(simd, mixing, out_nm))
         })
     }
 
     #[inline]
     fn albedo(&self, in_nm: f32) -> f32 {
-        with_baseline!(simd => {
-            let absorbed = self.absorbed(simd, in_nm);
-            let [one, two] = self.returned_of(simd, in_nm, absorbed);
+        with_rules!(self, simd, mixing => {
+            let absorbed = self.absorbed(simd, mixing, in_nm);
+            let [one, two] = self.returned_of(simd, mixing, in_nm, absorbed);
             let weights = load(simd, &self.weights);
             self.reflectance_through(simd, in_nm, absorbed) + sum(weights * (one + two))
         })
@@ -486,15 +517,15 @@ impl Bispectral for PackedMixture<'_> {
 
     #[inline]
     fn sample_incident(&self, out_nm: f32, u: [f32; 2]) -> Option<Sample<f32>> {
-        with_baseline!(simd => {
-            let emission = self.emission(simd, out_nm);
-            let shares = self.leaving(simd, out_nm, emission);
+        with_rules!(self, simd, mixing => {
+            let emission = self.emission(simd, mixing, out_nm);
+            let shares = self.leaving(simd, mixing, out_nm, emission);
             let throughput = shares.total();
-            Some(match shares.choose(self.model.mixing.lobes(), throughput, u[0])? {
+            Some(match shares.choose(mixing.lobes(), throughput, u[0])? {
                 None => elastic(out_nm, shares.elastic, throughput),
                 Some(lobe) => {
                     let in_nm = self.chosen(lobe).draw_absorbed(simd, u[1]);
-                    let moved = self.moved(simd, self.returned(simd, in_nm), emission);
+                    let moved = self.moved(simd, self.returned(simd, mixing, in_nm), emission);
                     shifted(in_nm, moved, throughput)
                 }
             })
@@ -506,31 +537,31 @@ impl Bispectral for PackedMixture<'_> {
         if !self.fluorescent {
             return 0.0;
         }
-        with_baseline!(simd => {
-            let emission = self.emission(simd, out_nm);
-            let moved = self.moved(simd, self.returned(simd, in_nm), emission);
-            ratio(moved, self.leaving(simd, out_nm, emission).total())
+        with_rules!(self, simd, mixing => {
+            let emission = self.emission(simd, mixing, out_nm);
+            let moved = self.moved(simd, self.returned(simd, mixing, in_nm), emission);
+            ratio(moved, self.leaving(simd, mixing, out_nm, emission).total())
         })
     }
 
     #[inline]
     fn incident_elastic_probability(&self, out_nm: f32) -> f32 {
-        with_baseline!(simd => {
-            let shares = self.leaving(simd, out_nm, self.emission(simd, out_nm));
+        with_rules!(self, simd, mixing => {
+            let shares = self.leaving(simd, mixing, out_nm, self.emission(simd, mixing, out_nm));
             ratio(shares.elastic, shares.total())
         })
     }
 
     #[inline]
     fn sample_outgoing(&self, in_nm: f32, u: [f32; 2]) -> Option<Sample<f32>> {
-        with_baseline!(simd => {
-            let (returned, shares) = self.arriving(simd, in_nm);
+        with_rules!(self, simd, mixing => {
+            let (returned, shares) = self.arriving(simd, mixing, in_nm);
             let throughput = shares.total();
-            Some(match shares.choose(self.model.mixing.lobes(), throughput, u[0])? {
+            Some(match shares.choose(mixing.lobes(), throughput, u[0])? {
                 None => elastic(in_nm, shares.elastic, throughput),
                 Some(lobe) => {
                     let out_nm = self.chosen(lobe).draw_emitted(simd, u[1]);
-                    let moved = self.moved(simd, returned, self.emission(simd, out_nm));
+                    let moved = self.moved(simd, returned, self.emission(simd, mixing, out_nm));
                     shifted(out_nm, moved, throughput)
                 }
             })
@@ -542,16 +573,16 @@ impl Bispectral for PackedMixture<'_> {
         if !self.fluorescent {
             return 0.0;
         }
-        with_baseline!(simd => {
-            let (returned, shares) = self.arriving(simd, in_nm);
-            ratio(self.moved(simd, returned, self.emission(simd, out_nm)), shares.total())
+        with_rules!(self, simd, mixing => {
+            let (returned, shares) = self.arriving(simd, mixing, in_nm);
+            ratio(self.moved(simd, returned, self.emission(simd, mixing, out_nm)), shares.total())
         })
     }
 
     #[inline]
     fn outgoing_elastic_probability(&self, in_nm: f32) -> f32 {
-        with_baseline!(simd => {
-            let (_, shares) = self.arriving(simd, in_nm);
+        with_rules!(self, simd, mixing => {
+            let (_, shares) = self.arriving(simd, mixing, in_nm);
             ratio(shares.elastic, shares.total())
         })
     }

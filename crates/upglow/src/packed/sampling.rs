@@ -27,32 +27,32 @@ pub(crate) struct DrawnLobe<'t> {
 impl<'t> DrawnLobe<'t> {
     /// An incident wavelength with the density of what the lobe returns, from `u` in 0..1.
     #[inline(always)]
-    pub(crate) fn draw_absorbed<S: Simd>(self, simd: S, u: f32) -> f32 {
+    pub(crate) fn draw_absorbed<S: Simd>(&self, simd: S, u: f32) -> f32 {
         match &self.model.model {
             Model::Dyes(model) if model.options().accounting == Accounting::Energy => {
                 let (dye, u) = self.pick_dye(simd, |dye| dye.absorbed_nm, u);
                 self.model.curves.absorbing.quantile(simd, dye, u)
             }
-            _ => to_single(self.lobe(simd).map_or(0.0, |lobe| lobe.sample_absorbed(u.into()))),
+            _ => self.in_double(simd, Lobe::sample_absorbed, u),
         }
     }
 
     /// An outgoing wavelength with the density of the lobe's emission, from `u` in 0..1.
     #[inline(always)]
-    pub(crate) fn draw_emitted<S: Simd>(self, simd: S, u: f32) -> f32 {
+    pub(crate) fn draw_emitted<S: Simd>(&self, simd: S, u: f32) -> f32 {
         match &self.model.model {
             Model::Dyes(_) => {
                 let (dye, u) = self.pick_dye(simd, |dye| dye.emitted, u);
                 self.model.curves.emitting.quantile(simd, dye, u)
             }
-            _ => to_single(self.lobe(simd).map_or(0.0, |lobe| lobe.sample_emitted(u.into()))),
+            _ => self.in_double(simd, Lobe::sample_emitted, u),
         }
     }
 
     /// One of the lobe's dyes in proportion to an area of its curve, and what is left of `u` to draw
     /// from it.
     #[inline(always)]
-    fn pick_dye<S: Simd>(self, simd: S, area: impl Fn(&DyeNumbers) -> f32, u: f32) -> (u32, f32) {
+    fn pick_dye<S: Simd>(&self, simd: S, area: impl Fn(&DyeNumbers) -> f32, u: f32) -> (u32, f32) {
         let PackedDyes { weight, first, .. } = self.numbers.into();
         let first = whole(simd, first);
         if self.model.mixing == Mixing::Separate {
@@ -67,8 +67,15 @@ impl<'t> DrawnLobe<'t> {
         (first + u32::from(second), (target - start) / share)
     }
 
+    /// A wavelength drawn from the lobe in double precision: apart, so that other draws need not save
+    /// registers for it.
+    #[inline(never)]
+    fn in_double<S: Simd>(&self, simd: S, draw: fn(&Lobe<'t>, f64) -> f64, u: f32) -> f32 {
+        to_single(self.lobe(simd).map_or(0.0, |lobe| draw(&lobe, u.into())))
+    }
+
     /// The lobe in double precision.
-    fn lobe<S: Simd>(self, simd: S) -> Option<Lobe<'t>> {
+    fn lobe<S: Simd>(&self, simd: S) -> Option<Lobe<'t>> {
         let numbers = self.numbers.map(f64::from);
         let fluorescence = match &self.model.model {
             Model::Reflectance => Fluorescence::None,
