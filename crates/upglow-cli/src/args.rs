@@ -1,4 +1,4 @@
-//! What was typed. Each option is one field here: its name, value, default and help.
+//! The command line: each option is one field here, with its name, value, default and help.
 
 mod build;
 mod pictures;
@@ -18,7 +18,7 @@ pub(crate) use pictures::{BakeArgs, BakeForm, CheckArgs, ExamplesArgs, LintArgs,
 use values::rgb_space;
 
 /// Turns RGB colors into physically valid spectral materials, with fluorescence where no
-/// reflectance can show the color.
+/// reflectance can match the color.
 #[derive(Clone, Debug, Parser)]
 #[command(name = "upglow", version, max_term_width = 100)]
 pub(crate) struct Args {
@@ -42,8 +42,8 @@ pub(crate) enum Command {
     Export(ExportArgs),
     /// Convert EXR, TIFF or PNG pictures to EXR files of materials, spectra or colors under a light
     Bake(Box<BakeArgs>),
-    /// Report which texels of pictures a reflectance can show, which need fluorescence, and which
-    /// no material can show
+    /// Report which texels of pictures a reflectance can match, which need fluorescence, and which
+    /// no material can match
     Check(CheckArgs),
     /// Show the spectrum or material of one texel of a baked or spectral EXR
     Read(ReadArgs),
@@ -59,7 +59,7 @@ pub(crate) enum Command {
     Reproduce(MovedArgs),
 }
 
-/// The words after a command that is now in another program.
+/// The arguments of a command that is now in another program.
 #[derive(Clone, Debug, clap::Args)]
 #[command(disable_help_flag = true)]
 pub(crate) struct MovedArgs {
@@ -89,7 +89,7 @@ pub(crate) struct VerifyArgs {
     #[arg(long, default_value = "1000000", value_name = "N", value_parser = count::<usize>)]
     pub(crate) points: usize,
     /// How colors between the nodes get their material: blend mixes those of the four nodes around
-    /// the color, none takes the nearest one, the others interpolate parameters as König et al. 2020
+    /// the color, none takes the nearest one, the others interpolate parameters as in König et al. 2020
     #[arg(long, default_value_t, value_name = "NAME", value_parser = word::<Interpolation>())]
     pub(crate) interpolation: Interpolation,
     /// Seed of the random colors; the same seed draws the same colors
@@ -113,7 +113,7 @@ pub(crate) struct ColorArgs {
     #[arg(value_name = "B", allow_hyphen_values = true)]
     pub(crate) blue: String,
     /// How a color between the nodes gets its material: blend mixes those of the four nodes around
-    /// it, none takes the nearest one, the others interpolate parameters as König et al. 2020
+    /// it, none takes the nearest one, the others interpolate parameters as in König et al. 2020
     /// [default: blend]
     #[arg(long, value_name = "NAME", value_parser = word::<Interpolation>(), conflicts_with = "direct")]
     pub(crate) interpolation: Option<Interpolation>,

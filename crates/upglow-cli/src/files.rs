@@ -1,4 +1,4 @@
-//! Cubes that are read, and files that must not replace what they are made of.
+//! Reading cubes, and checking that no output replaces an input.
 
 use std::path::{Path, PathBuf};
 
@@ -9,7 +9,7 @@ pub(crate) use upglow_terminal::files::{check_output, make_folder, read_text, wr
 
 const A_CUBE: &str = "a cube made by `upglow build`";
 
-/// Reads a cube, or says in one line why the file is none.
+/// Reads a cube.
 pub(crate) fn read_cube(path: &Path) -> Result<Cube, Failure> {
     Cube::read(path).map_err(|error| match error {
         CubeFileError::Read { source, .. } => Failure::system(path, &source, A_CUBE),
@@ -23,7 +23,7 @@ pub(crate) fn bytes(path: &Path) -> Result<u64, Failure> {
     path.metadata().map(|found| found.len()).map_err(|error| Failure::system(path, &error, A_CUBE))
 }
 
-/// Checks an output, and that writing it does not replace the cube or a picture that is read.
+/// Checks that an output can be written, and does not replace the cube or an input picture.
 pub(crate) fn check_output_of<'p>(
     output: &Path,
     cube: Option<&Path>,
@@ -39,7 +39,7 @@ pub(crate) fn check_output_of<'p>(
     check_output(output)
 }
 
-/// Whether two paths lead to one file or folder that is there.
+/// Whether two paths lead to the same existing file or folder.
 pub(crate) fn is_same(a: &Path, b: &Path) -> bool {
     matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }

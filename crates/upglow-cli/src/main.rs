@@ -1,7 +1,7 @@
 //! The program `upglow`: RGB colors to physically valid spectral materials with fluorescence.
 //!
-//! What was typed (`args`) becomes what is to be done (`plan`), and a command does it. Data goes to
-//! standard output, progress, warnings and errors to standard error.
+//! The command line (`args`) is checked and resolved (`plan`), and a command (`commands`) does the
+//! work. Data goes to standard output; progress, warnings and errors go to standard error.
 
 mod args;
 mod commands;
@@ -14,16 +14,17 @@ mod plot;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    keep_quiet_about_damaged_files();
+    silence_panics_of_damaged_files();
     upglow_terminal::run(commands::run)
 }
 
-/// A damaged OpenEXR block ends in an error of one line, not in a panic's message before it.
-fn keep_quiet_about_damaged_files() {
-    let speak = std::panic::take_hook();
+/// The OpenEXR decoder may panic on a damaged block; the panic is caught and reported as an error,
+/// so its own message is not printed.
+fn silence_panics_of_damaged_files() {
+    let print = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
         if !upglow_image::ExrReader::is_unpacking() {
-            speak(panic);
+            print(panic);
         }
     }));
 }

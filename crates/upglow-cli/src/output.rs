@@ -1,16 +1,16 @@
-//! Text for people: lines of names and values, and tables.
+//! Building blocks of text reports: lines of names and values, and tables.
 
 use std::fmt::{self, Display};
 
 use upglow_fit::CubeSummary;
 use upglow_terminal::size;
 
-/// Says on standard error what the user should know although the work goes on.
+/// Prints a warning on standard error.
 pub(crate) fn warn(message: impl Display) {
     eprintln!("upglow: warning: {message}");
 }
 
-/// Lines of names and values, the values in one column.
+/// Lines of names and values, with the values aligned.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Lines {
     rows: Vec<(String, String)>,
@@ -25,12 +25,12 @@ impl Lines {
         self
     }
 
-    /// Adds a line of a file and its size.
+    /// Adds a line with a file and its size.
     pub(crate) fn add_file(&mut self, name: &str, file: &str, bytes: u64) -> &mut Self {
         self.add(name, format_args!("{file}, {}", size(bytes)))
     }
 
-    /// Adds a line for each number of a summary.
+    /// Adds a line per number of a summary.
     pub(crate) fn add_summary(&mut self, summary: &CubeSummary) -> &mut Self {
         let width = summary.nodes.to_string().len();
         let share = |count: usize| {
@@ -59,14 +59,14 @@ impl Display for Lines {
     }
 }
 
-/// Where the cells of a column stand.
+/// The alignment of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Side {
     Left,
     Right,
 }
 
-/// A table with a head.
+/// A table with a header.
 #[derive(Clone, Debug)]
 pub(crate) struct Table<const N: usize> {
     sides: [Side; N],
@@ -77,6 +77,11 @@ impl<const N: usize> Table<N> {
     pub(crate) fn new(columns: [(&str, Side); N]) -> Self {
         let sides = columns.map(|(_, side)| side);
         Self { sides, rows: vec![columns.map(|(head, _)| head.to_owned())] }
+    }
+
+    /// Whether there is no row below the header.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.rows.len() == 1
     }
 
     pub(crate) fn add(&mut self, row: [String; N]) {
@@ -104,12 +109,12 @@ impl<const N: usize> Display for Table<N> {
     }
 }
 
-/// Three numbers to four decimals, in columns.
+/// Three numbers with four decimals, aligned.
 pub(crate) fn triple(values: [f64; 3]) -> String {
     values.map(|v| format!("{:7.4}", without_negative_zero(v, 4))).join("  ")
 }
 
-/// A number that prints as -0.0000 is a small rounding error: it becomes 0.
+/// Replaces a number that would print as -0.0000 with 0.
 fn without_negative_zero(value: f64, decimals: i32) -> f64 {
     if value.abs() < 0.5 * 10f64.powi(-decimals) { 0.0 } else { value }
 }
@@ -119,14 +124,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn values_stand_in_one_column() {
+    fn values_are_aligned() {
         let mut lines = Lines::default();
         lines.add("model", "dyes").add("RGB space", "acescg").add("", "more");
         assert_eq!(lines.to_string(), "model:      dyes\nRGB space:  acescg\n            more\n");
     }
 
     #[test]
-    fn columns_of_a_table_stand_left_or_right() {
+    fn columns_are_aligned_left_or_right() {
         let mut table = Table::new([("light", Side::Left), ("X", Side::Right)]);
         table.add(["D65".into(), "0.95".into()]);
         assert_eq!(table.to_string(), "light     X\nD65    0.95\n");

@@ -1,13 +1,14 @@
-//! Which pictures a command works on, and where what it makes of them goes.
+//! The pictures that a command reads, and the files that it writes for them.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
+
 use upglow_terminal::Failure;
 
-/// Suffixes of the pictures that are taken from a folder.
+/// Suffixes of the pictures in a folder.
 const SUFFIXES: [&str; 4] = ["exr", "tif", "tiff", "png"];
 
-/// The pictures that were named, and those in the folders that were named, sorted by name there.
+/// The given pictures, and those in the given folders, sorted by name within each folder.
 pub(crate) fn find(inputs: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     let mut found = Vec::new();
     for input in inputs {
@@ -29,7 +30,7 @@ pub(crate) fn find(inputs: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     Ok(found)
 }
 
-/// Checks that a file that was named can be read, before others are worked on.
+/// Checks that a file can be read, before work on others starts.
 pub(crate) fn check_there(path: &Path, expected: &str) -> Result<(), Failure> {
     match std::fs::File::open(path) {
         Ok(_) if path.is_dir() => {
@@ -58,9 +59,9 @@ fn is_picture(path: &Path) -> bool {
     SUFFIXES.iter().any(|known| known.eq_ignore_ascii_case(suffix))
 }
 
-/// Where what is made of each input goes: to the file `output` for one picture, if that ends in
-/// `exr` and is not a folder; else into the folder `output`, named after the picture and `form`, so
-/// that the tile number of a UDIM stays where it was.
+/// The output file of each input: the file `output` for a single picture, if `output` ends in `exr`
+/// and is not a folder; otherwise a file in the folder `output`, named after the picture and `form`,
+/// with the tile number of a UDIM in its place.
 pub(crate) fn outputs(
     inputs: &[PathBuf],
     output: &Path,
@@ -72,7 +73,7 @@ pub(crate) fn outputs(
             1 if is_exr => Ok(vec![output.to_owned()]),
             1 => Err(Failure::file(
                 output,
-                "not an EXR, expected a file that ends in exr, or a folder",
+                "not an EXR file, expected a name that ends in .exr, or a folder",
             )),
             count => Err(Failure::file(
                 output,
@@ -87,7 +88,7 @@ pub(crate) fn outputs(
             let twin = inputs[twin].display();
             return Err(Failure::file(
                 input,
-                format!("has the name of {twin}, expected names that differ without suffix"),
+                format!("same name as {twin}, expected names that differ without their suffixes"),
             ));
         }
         outputs.push(path);
@@ -95,7 +96,7 @@ pub(crate) fn outputs(
     Ok(outputs)
 }
 
-/// `wall.1001.exr` becomes `wall.material.1001.exr`, which other programs still see as a tile.
+/// `wall.1001.exr` becomes `wall.material.1001.exr`, which other programs still recognize as a tile.
 fn name_of(input: &Path, form: &str) -> PathBuf {
     let stem = input.file_stem().unwrap_or_default().to_string_lossy();
     match stem.rsplit_once(['.', '_']) {
@@ -107,7 +108,7 @@ fn name_of(input: &Path, form: &str) -> PathBuf {
     }
 }
 
-/// Whether a word is the number of a UDIM tile: 1001 and up, in four digits.
+/// Whether a word is the number of a UDIM tile: four digits, 1001 or greater.
 fn is_udim(word: &str) -> bool {
     word.len() == 4 && word.parse().is_ok_and(|tile: u32| tile >= 1001)
 }
@@ -126,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn one_picture_may_name_its_file_and_two_need_a_folder() {
+    fn one_picture_may_have_an_output_file_and_two_need_a_folder() {
         let one = [PathBuf::from("a.png")];
         let two = [PathBuf::from("a.png"), PathBuf::from("b.png")];
         let out = Path::new("out.exr");
@@ -140,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn a_folder_gives_its_pictures_in_order() {
+    fn pictures_of_a_folder_are_sorted() {
         let folder = tempfile::tempdir().unwrap();
         for name in ["b.EXR", "a.png", "notes.txt"] {
             std::fs::write(folder.path().join(name), "").unwrap();

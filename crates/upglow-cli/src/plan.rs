@@ -1,4 +1,4 @@
-//! What was typed, checked and resolved: what is to be done.
+//! Checks the options and turns them into values of the libraries.
 
 use std::error::Error;
 use std::path::Path;
@@ -22,7 +22,7 @@ pub(crate) struct BuildPlan {
 }
 
 impl BuildPlan {
-    /// Checks everything that can be checked before the work starts, the output last.
+    /// Checks everything that can be checked before the work starts; the output last.
     pub(crate) fn new(args: &BuildArgs) -> Result<Self, Failure> {
         let contract = contract(&args.contract)?;
         let model = model(&args.model)?;
@@ -54,18 +54,18 @@ fn contract(args: &ContractArgs) -> Result<Contract, Failure> {
     })
 }
 
-/// Refuses a light that the observer does not see.
+/// Returns an error if the observer does not see the light.
 pub(crate) fn checked(contract: Contract) -> Result<Contract, Failure> {
     contract.check().map_err(|error| Failure::option("--illuminant", error))?;
     Ok(contract)
 }
 
-/// A light by name or file, given with `option`.
+/// The light of a name or file, given with `option`.
 pub(crate) fn light(option: &str, text: &str) -> Result<Illuminant, Failure> {
     named_or_read(option, text, "power", Illuminant::named, Illuminant::from_csv)
 }
 
-/// The built-in value of this name, or the one in the CSV file at this path, named after the file.
+/// The built-in value of this name, or that of the CSV file at this path, named after the file.
 fn named_or_read<T, E: Error + Send + Sync + 'static>(
     option: &str,
     text: &str,
@@ -85,13 +85,13 @@ fn named_or_read<T, E: Error + Send + Sync + 'static>(
     }
 }
 
-/// Whether a word that is not a built-in name is meant as a file or folder.
+/// Whether a word that is no built-in name looks like a path.
 fn is_path(path: &Path) -> bool {
     path.exists() || path.components().count() > 1 || path.extension().is_some()
 }
 
-/// No option is ignored: one that was given but does not apply to what `chooser` chose is an error.
-/// Each option comes with whether it was given, and the choices it applies to.
+/// Returns an error for an option that was given but would be ignored, because it does not apply to
+/// what the option `chooser` chose. Each option comes with whether it was given, and its choices.
 pub(crate) fn refuse_ignored<T: Choice + PartialEq>(
     chooser: &str,
     chosen: T,
@@ -146,7 +146,7 @@ fn dye_set(text: &str) -> Result<DyeSet, Failure> {
     }
 }
 
-/// Names the file in the folder that is at fault.
+/// Names the invalid file in the folder.
 fn folder_failure(folder: &Path, error: DyeSetError) -> Failure {
     match error {
         DyeSetError::Read { path, source } => {
@@ -155,7 +155,9 @@ fn folder_failure(folder: &Path, error: DyeSetError) -> Failure {
         DyeSetError::Csv { path, source } => Failure::file(&path, source),
         DyeSetError::QuantumYield { path, dye, found } => Failure::file(
             &path,
-            format!("quantum yield {found:?} of {dye}, expected a number from 0 to 1 or nothing"),
+            format!(
+                "quantum yield {found:?} of {dye}, expected a number from 0 to 1, or an empty cell"
+            ),
         ),
         error => Failure::file(folder, error),
     }
@@ -195,7 +197,7 @@ fn model_failure(error: ModelError) -> Failure {
     Failure::option(option, error)
 }
 
-/// The color that was typed, in the range that a look-up or a direct fit allows.
+/// The color on the command line, in the range of a look-up or of a direct fit.
 pub(crate) fn color(args: &ColorArgs) -> Result<LinearRgb, Failure> {
     let [red, green, blue] = [("R", &args.red), ("G", &args.green), ("B", &args.blue)]
         .map(|(channel, text)| component(channel, text, args.direct));
@@ -221,7 +223,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn components_are_numbers_in_range() {
+    fn components_out_of_range_are_refused() {
         assert_eq!(component("R", "0.5", false), Ok(0.5));
         assert_eq!(component("R", "1.58", true), Ok(1.58));
         for (channel, text, direct, line) in [

@@ -1,4 +1,4 @@
-//! Each command on a small cube.
+//! Each command, run on a small cube.
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
 
 mod support;
@@ -100,7 +100,7 @@ fn inspect_is_text_with_aligned_values() {
         line.len() - line.split_once(": ").unwrap().1.trim_start().len()
     };
     let columns = ["resolution", "RGB space", "illuminant", "slope limit", "max ΔE00"].map(column);
-    // The two bytes of Δ.
+    // Δ has two bytes.
     assert_eq!(columns[..4], [columns[0]; 4], "{text}");
     assert_eq!(columns[4], columns[0] + 1, "{text}");
     assert!(text.contains("seed8, 8 in a ring") && text.contains("ATTO-TEC"), "{text}");
@@ -109,7 +109,7 @@ fn inspect_is_text_with_aligned_values() {
 #[test]
 fn a_fresh_cube_keeps_every_law() {
     let folder = folder_with_cube("");
-    // The others mix numbers of reflectances, and nothing holds the slope of what comes out.
+    // The other modes interpolate parameters, which does not limit the slope of the result.
     for mode in ["blend", "none"] {
         let report = folder.json(&format!("verify cube --points 2000 --interpolation {mode}"));
         assert_eq!((&report["holds"], &report["points"]), (&Value::Bool(true), &2000.into()));
@@ -123,7 +123,7 @@ fn a_fresh_cube_keeps_every_law() {
     assert!(text.contains("Every law holds") && text.contains("seed 7"), "{text}");
 }
 
-/// A cube of which every node has this reflectance, with a slope limit of 0.01/nm.
+/// A cube in which every node has this reflectance, with a slope limit of 0.01/nm.
 fn cube_of(reflectance: Edge) -> Vec<u8> {
     let node = Node::new(reflectance, Fluorescence::None, 0.0);
     let fit = FitRecord { slope_max_per_nm: Some(0.01), ..FitRecord::default() };
@@ -149,9 +149,9 @@ fn a_broken_law_is_named_with_its_offender() {
 fn grays_white_and_black_are_exact_and_do_not_fluoresce() {
     let folder = folder_with_cube("");
     for v in ["0", "0.18", "0.5", "1"] {
-        for way in ["", "--direct"] {
-            let found = folder.json(&format!("color cube {v} {v} {v} {way}"));
-            assert!(number(&found["de2000"]) < 1e-3, "{v} {way}");
+        for option in ["", "--direct"] {
+            let found = folder.json(&format!("color cube {v} {v} {v} {option}"));
+            assert!(number(&found["de2000"]) < 1e-3, "{v} {option}");
             assert_eq!(found["standing"]["kind"], "reflectance");
             for part in found["parts"].as_array().unwrap() {
                 assert_eq!(
@@ -164,7 +164,7 @@ fn grays_white_and_black_are_exact_and_do_not_fluoresce() {
 }
 
 #[test]
-fn a_color_is_told_where_it_stands() {
+fn reports_say_whether_a_color_can_be_matched() {
     let folder = folder_with_cube("");
     let kinds = [
         ("0.5 0.4 0.3", "reflectance"),
@@ -178,7 +178,7 @@ fn a_color_is_told_where_it_stands() {
         assert!((weights.sum::<f64>() - 1.0).abs() < 1e-12);
     }
     let text = folder.done("color cube 0 1 0");
-    assert!(text.contains("no material shows it: the nearest is"), "{text}");
+    assert!(text.contains("by no material: the nearest is"), "{text}");
 }
 
 #[test]
@@ -258,7 +258,7 @@ fn shaders_come_with_their_textures() {
     }
 }
 
-/// Compares a line with its node, to the last bit.
+/// Compares a line with its node, bit by bit.
 fn check_line(cube: &Cube, index: usize, cells: &[&str], dyes: bool) {
     let double = |cell: usize| cells[cell].parse::<f64>().unwrap();
     let single = |cell: usize| cells[cell].parse::<f32>().unwrap();

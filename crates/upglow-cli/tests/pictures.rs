@@ -1,4 +1,4 @@
-//! Pictures from end to end: check, bake, lint, read, and tables of coefficients.
+//! The commands for pictures and coefficient tables, from end to end.
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
 
 mod support;
@@ -122,7 +122,7 @@ fn a_material_is_baked_and_read_back() {
     );
     assert_eq!(
         one_line(&run.stderr),
-        "tile.material.exr: broken, expected a well-formed spectral EXR"
+        "tile.material.exr: not well-formed, expected a well-formed spectral EXR"
     );
 }
 
@@ -255,7 +255,7 @@ fn pictures_that_are_refused() {
         ("check tile.exr --cube cube -o cube", "cube: the cube itself, expected another file"),
         (
             "bake cube tile.exr -o tile.png",
-            "tile.png: not an EXR, expected a file that ends in exr",
+            "tile.png: not an EXR file, expected a name that ends in .exr",
         ),
         ("read tile.exr --at 0,0", "tile.exr: no spectral channel, expected names as T.550"),
     ];
@@ -300,7 +300,7 @@ fn options_that_do_not_fit() {
         ),
         (
             "bake cube tile.exr -o x.exr --as radiance",
-            "--light: not given, expected one with --as radiance",
+            "--light: not given, expected a light with --as radiance",
         ),
         (
             "bake cube tile.exr -o x.exr --as radiance --light F11",

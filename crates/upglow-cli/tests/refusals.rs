@@ -1,4 +1,5 @@
-//! Bad input gets one line, what was found and what was expected, and leaves nothing.
+//! Invalid input is reported in one line that says what was found and what was expected, and no file
+//! is written.
 
 mod support;
 
@@ -232,7 +233,7 @@ fn outputs_that_cannot_be_written_are_refused_before_the_work() {
         ("/proc/cube", "/proc/cube: "),
     ];
     for (path, line) in cases {
-        // Minutes of work, were it to start.
+        // The build would take minutes if it started.
         let found = folder.refused(1, &format!("build --resolution 256 -o {path}"));
         assert!(found.starts_with(line), "{found}");
         let found = folder.refused(1, &format!("export cube {path} --format csv"));
@@ -260,7 +261,7 @@ fn a_shader_needs_a_name_that_fits_into_its_text() {
     assert!(!folder.path().join("sk,y.wgsl").exists());
 }
 
-/// Runs words of the program in a shell, after `preparation`; gives status and standard error.
+/// Runs the program in a shell after `preparation`; returns status and standard error.
 #[cfg(unix)]
 #[expect(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
 fn in_shell(folder: &Folder, preparation: &str, words: &str) -> (i32, String) {
@@ -331,7 +332,7 @@ fn a_full_or_closed_standard_output() {
 }
 
 #[test]
-fn a_command_of_the_study_says_which_program_has_it() {
+fn commands_that_moved_name_their_program() {
     let folder = Folder::new();
     for command in ["figures", "reproduce"] {
         let expected = format!(

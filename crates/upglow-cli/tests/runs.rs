@@ -1,4 +1,4 @@
-//! The same bytes from any run, and nothing from a stopped one.
+//! Every run writes the same bytes, and a stopped one writes nothing.
 
 mod support;
 
@@ -35,7 +35,7 @@ mod stopped {
     use super::Folder;
     use super::support::{one_line, program};
 
-    /// Far more than a program needs to start or to stop on a busy machine.
+    /// Far longer than the program takes to start or stop on a busy machine.
     const PATIENCE: Duration = Duration::from_secs(60);
 
     /// Whether the process has set a handler for this signal.

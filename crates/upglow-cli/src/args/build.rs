@@ -1,4 +1,4 @@
-//! What was typed for `upglow build`.
+//! The options of `upglow build`.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! What was typed about pictures.
+//! The options of the commands for pictures.
 
 use std::path::PathBuf;
 
@@ -8,7 +8,7 @@ use upglow_terminal::{Threads, word};
 
 use super::values::{bands, position, rgb_space};
 
-/// What the numbers of a picture mean, where its file does not say.
+/// How to interpret a picture whose file does not say it.
 #[derive(Clone, Debug, clap::Args)]
 #[command(next_help_heading = "Pictures")]
 pub(crate) struct PictureArgs {
@@ -48,7 +48,7 @@ pub(crate) struct BakeArgs {
     pub(crate) picture: PictureArgs,
     /// What to do with texels outside 0 to 1 or not finite: clip limits each channel, scale divides
     /// the picture by its maximum, nearest moves each color to the nearest one that a material can
-    /// show [default: refuse the picture]
+    /// match [default: refuse the picture]
     #[arg(long, value_name = "NAME", value_parser = word::<Repair>(), help_heading = "Pictures")]
     pub(crate) repair: Option<Repair>,
 
@@ -142,7 +142,7 @@ pub(crate) enum BakeForm {
 
 choices!(BakeForm, "form", Material = "material", Spectral = "spectral", Radiance = "radiance",);
 
-/// The number formats of channels.
+/// Number formats of channels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum SampleName {
     Half,

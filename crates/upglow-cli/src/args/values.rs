@@ -1,9 +1,10 @@
-//! How values of options are read that are neither a word nor a number.
+//! Parsers of option values that are neither a word nor a number.
 
 use upglow_color::{Grid, RgbSpace, RgbSpaceError};
 use upglow_terminal::parsed;
 
-/// The greatest slope of a reflectance, 1/nm; `None` for no limit.
+/// The greatest slope of a reflectance, 1/nm, or `None` for no limit. A type of its own, because clap
+/// would read a plain `Option` as an option without default.
 pub(super) type SlopeLimit = Option<f64>;
 
 pub(super) fn slope_limit(text: &str) -> Result<SlopeLimit, String> {
@@ -31,7 +32,7 @@ pub(super) fn rgb_space(text: &str) -> Result<RgbSpace, RgbSpaceError> {
     }
 }
 
-/// Wavelengths FIRST:LAST:STEP within the range of all tables.
+/// Wavelengths FIRST:LAST:STEP in nm, within the range of the built-in tables.
 pub(super) fn bands(text: &str) -> Result<Grid, String> {
     let numbers: Option<Vec<u32>> = text.split(':').map(|cell| cell.trim().parse().ok()).collect();
     let Some(&[first, last, step]) = numbers.as_deref() else {
@@ -49,14 +50,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_slope_limit_has_a_word() {
+    fn the_word_none_means_no_slope_limit() {
         assert_eq!(slope_limit("none"), Ok(None));
         assert_eq!(slope_limit("0.02"), Ok(Some(0.02)));
         assert!(slope_limit("steep").is_err());
     }
 
     #[test]
-    fn eight_numbers_are_a_space() {
+    fn eight_chromaticities_are_a_space() {
         let custom = rgb_space("0.64,0.33,0.30,0.60,0.15,0.06,0.3127,0.3290");
         assert!(custom.is_ok_and(|space| space.name() == "custom"));
         assert!(rgb_space("rec709").is_err());

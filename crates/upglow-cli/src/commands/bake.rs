@@ -1,4 +1,4 @@
-//! `upglow bake`: pictures become spectral files.
+//! `upglow bake`: converts pictures to spectral files.
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -57,7 +57,7 @@ pub(crate) fn run(args: &BakeArgs, console: &Console) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Bands that programs of others use most.
+/// The bands that most other programs use.
 const DEFAULT_BANDS: [u32; 3] = [380, 780, 10];
 
 fn form(args: &BakeArgs) -> Result<Form, Failure> {
@@ -80,17 +80,17 @@ fn form(args: &BakeArgs) -> Result<Form, Failure> {
         }
         (Radiance, Some(light)) => Form::Radiance { light: plan::light("--light", light)? },
         (Radiance, None) => {
-            let message = "not given, expected one with --as radiance";
+            let message = "not given, expected a light with --as radiance";
             return Err(Failure::option("--light", message));
         }
     })
 }
 
-/// Makes the folders of the outputs, and checks all of them before the first is baked.
+/// Creates the folders of the outputs, and checks all outputs before the first is baked.
 fn check_outputs(args: &BakeArgs, inputs: &[PathBuf], outputs: &[PathBuf]) -> Result<(), Failure> {
     if args.inputs.iter().any(|input| input.is_dir() && files::is_same(input, &args.output)) {
-        let message = "the folder of the pictures, expected another: the next run would bake what \
-                       this one makes";
+        let message = "the folder of the pictures, expected another: the next run would bake the \
+                       files that this one writes";
         return Err(Failure::file(&args.output, message));
     }
     for output in outputs {
@@ -102,7 +102,7 @@ fn check_outputs(args: &BakeArgs, inputs: &[PathBuf], outputs: &[PathBuf]) -> Re
     Ok(())
 }
 
-/// Why the cube has no such form.
+/// Names the option or file because of which the cube cannot be baked in this form.
 fn refused(error: BakeError, cube: &Path) -> Failure {
     match error {
         BakeError::NoDyes { .. } | BakeError::Compact(_) => Failure::option("--compact", error),
@@ -122,7 +122,7 @@ fn failure(error: BakeError, input: &Path, output: &Path) -> Failure {
     }
 }
 
-/// What is wrong with a picture, with the option that mends it.
+/// The fault of a picture, and the option that solves it.
 pub(super) fn picture_failure(error: PictureError, input: &Path) -> Failure {
     let remedy = match error {
         PictureError::Space => "; give --space",

@@ -48,7 +48,7 @@ pub(crate) fn run(args: &BuildArgs, console: &Console) -> Result<(), Failure> {
     })
 }
 
-/// A yield of 1 stands for one that nobody measured: the user should know.
+/// Warns that a yield of 1 is used for dyes without a published one.
 fn warn_of_unpublished_yields(model: &Model) {
     let Model::Dyes(dyes) = model else { return };
     let unpublished = dyes.without_published_yield();

@@ -1,4 +1,4 @@
-//! `upglow check`: what pictures ask of materials.
+//! `upglow check`: which texels of pictures a material can match.
 
 use std::path::{Path, PathBuf};
 
@@ -18,7 +18,7 @@ struct PictureReport {
     #[serde(flatten)]
     found: CheckReport,
     heat_map: Option<String>,
-    /// The page that all pictures are on.
+    /// The report on all pictures.
     page: Option<String>,
 }
 
@@ -70,7 +70,7 @@ fn check_outputs(args: &CheckArgs, inputs: &[PathBuf]) -> Result<(), Failure> {
     outputs.try_for_each(|output| files::check_output_of(output, args.cube.as_deref(), inputs))
 }
 
-/// The light and adaptation; the RGB space is each picture's own, or the cube's.
+/// The light and adaptation of the options or the cube. The RGB space is that of each picture.
 fn contract(args: &CheckArgs, cube: Option<&Cube>) -> Result<Contract, Failure> {
     let mut contract = cube.map(|cube| cube.contract().clone()).unwrap_or_default();
     if let Some(text) = &args.illuminant {
@@ -82,7 +82,7 @@ fn contract(args: &CheckArgs, cube: Option<&Cube>) -> Result<Contract, Failure> 
     plan::checked(contract)
 }
 
-/// Red, green and blue to four decimals: halves have no more.
+/// Red, green and blue with four decimals, the precision of half floats.
 fn rgb_text([r, g, b]: [f32; 3]) -> String {
     format!("{r:.4}, {g:.4}, {b:.4}")
 }
@@ -95,12 +95,12 @@ impl Report for PictureReport {
         let mut lines = Lines::default();
         lines
             .add("picture", format_args!("{file}, {width} × {height}"))
-            .add("judged as", format_args!("{rgb_space} under {illuminant}"))
-            .add("reflectance shows", share(counts.reflectance))
+            .add("interpreted as", format_args!("{rgb_space} under {illuminant}"))
+            .add("reflectance matches", share(counts.reflectance))
             .add("fluorescence needed", share(counts.needs_fluorescence))
-            .add("no material shows", share(counts.unreachable));
+            .add("no material matches", share(counts.unreachable));
         let flaws = Flaw::ALL.map(|flaw| (flaw.to_string(), counts.of(flaw)));
-        let counts = [("no colors".into(), counts.no_color)].into_iter().chain(flaws);
+        let counts = [("not a color".into(), counts.no_color)].into_iter().chain(flaws);
         for (name, count) in counts.filter(|(_, count)| *count > 0) {
             lines.add(name, format_args!("{count} texels"));
         }

@@ -1,4 +1,4 @@
-//! `upglow color`: the material of one color.
+//! `upglow color`: shows the material of one color.
 
 use upglow::{Cube, Interpolation, Mixture, ModelOnGrid};
 use upglow_color::{
@@ -13,10 +13,10 @@ use crate::args::ColorArgs;
 use crate::plot::{Curves, Figure, Swatch, svg};
 use crate::{files, plan};
 
-/// The lights that the material is shown under, beside the cube's own.
+/// The lights under which the material is shown, besides the cube's own.
 const LIGHTS: [&str; 3] = ["D65", "A", "E"];
 
-/// An ultraviolet lamp as is sold for minerals and banknotes: what shines under it fluoresces.
+/// An ultraviolet lamp as used for minerals and banknotes: only fluorescence is visible under it.
 const LAMP_PEAK_NM: f64 = 365.0;
 const LAMP_FWHM_NM: f64 = 12.0;
 
@@ -42,7 +42,7 @@ fn no_material(error: impl std::error::Error + Send + Sync + 'static) -> Failure
     Failure::input("R G B", error)
 }
 
-/// A material fitted to one color as those of the cube's nodes were.
+/// A material fitted to one color with the options of the cube.
 fn fitted<'c>(rgb: LinearRgb, cube: &'c Cube, args: &ColorArgs) -> Result<Mixture<'c>, Failure> {
     let options =
         FitOptions::try_from(cube.fit()).map_err(|error| Failure::file(&args.file, error))?;
@@ -52,7 +52,7 @@ fn fitted<'c>(rgb: LinearRgb, cube: &'c Cube, args: &ColorArgs) -> Result<Mixtur
     Ok(Mixture::of(cube.model(), fit.material()))
 }
 
-/// A material beside the color that it stands for.
+/// A material and the color that it should have.
 struct Shown<'a> {
     cube: &'a Cube,
     mixture: &'a Mixture<'a>,
@@ -122,7 +122,7 @@ impl<'a> Shown<'a> {
         }
     }
 
-    /// The material under the cube's own light, the standard ones, and an ultraviolet lamp.
+    /// The color of the material under the cube's own light, standard lights and an ultraviolet lamp.
     fn lights(&self) -> Vec<LightReport> {
         let contract = self.cube.contract();
         let own = contract.illuminant.name();
@@ -161,7 +161,7 @@ impl<'a> Shown<'a> {
         }
     }
 
-    /// Lines under the swatches of a figure.
+    /// The lines below the swatches of the figure.
     fn caption(&self) -> Vec<String> {
         let contract = self.cube.contract();
         let LinearRgb([r, g, b]) = self.rgb;

@@ -1,4 +1,4 @@
-//! What `upglow color` prints.
+//! The report of `upglow color`.
 
 use serde::Serialize;
 use upglow::{Features, Fluorescence, Interpolation, Material, Model, Sigmoid, Vertex};
@@ -10,8 +10,7 @@ use super::material_report::{ReflectanceReport, dye_names};
 use crate::output::{Lines, Side, Table, triple};
 use crate::plot::Curves;
 
-/// A difference above this is visible when both colors are side by side. Smaller would mark misses
-/// that are not visible.
+/// A difference above this is visible when both colors are side by side.
 const VISIBLE_DE2000: f64 = 1.0;
 
 #[derive(Debug, Serialize)]
@@ -19,7 +18,7 @@ pub(crate) struct ColorReport<'a> {
     pub(crate) file: String,
     pub(crate) rgb_space: &'a str,
     pub(crate) rgb: LinearRgb,
-    /// The color asked for under the cube's illuminant.
+    /// The requested color under the cube's illuminant.
     pub(crate) xyz: Xyz,
     /// `None` for a direct fit.
     pub(crate) interpolation: Option<Interpolation>,
@@ -33,7 +32,7 @@ pub(crate) struct ColorReport<'a> {
     pub(crate) curves: &'a Curves,
 }
 
-/// The limits of physics around a color.
+/// Whether physics allows a material of this color, and how far off the nearest one is.
 #[derive(Debug, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub(crate) enum StandingReport {
@@ -48,7 +47,7 @@ pub(crate) struct PartReport<'a> {
     weight: f64,
     #[serde(flatten)]
     reflectance: ReflectanceReport,
-    /// `None` for a flat reflectance, and for one with a straight parabola.
+    /// `None` for a flat reflectance, and for one whose parabola is a straight line.
     shift_nm: Option<f64>,
     width_nm: Option<f64>,
     slope_per_nm: Option<f64>,
@@ -85,7 +84,7 @@ impl<'a> PartReport<'a> {
         }
     }
 
-    /// What fluoresces, for a caption.
+    /// The dyes or the emission peak, for a caption.
     pub(crate) fn emitters(&self) -> Vec<String> {
         match &self.fluorescence {
             None => Vec::new(),
@@ -119,12 +118,12 @@ impl<'a> FluorescenceReport<'a> {
 impl StandingReport {
     fn text(&self) -> String {
         match self {
-            Self::Reflectance => "some reflectance shows it".into(),
+            Self::Reflectance => "by a reflectance".into(),
             Self::NeedsFluorescence { reflectance_distance_xyz, reflectance_de2000 } => format!(
-                "needs fluorescence: the nearest reflectance is {reflectance_distance_xyz:.4} away in XYZ, ΔE00 {reflectance_de2000:.2}"
+                "only with fluorescence: the nearest reflectance is {reflectance_distance_xyz:.4} away in XYZ, ΔE00 {reflectance_de2000:.2}"
             ),
             Self::Unreachable { fluorescence_distance_xyz, fluorescence_de2000 } => format!(
-                "no material shows it: the nearest is {fluorescence_distance_xyz:.4} away in XYZ, ΔE00 {fluorescence_de2000:.2}"
+                "by no material: the nearest is {fluorescence_distance_xyz:.4} away in XYZ, ΔE00 {fluorescence_de2000:.2}"
             ),
         }
     }
@@ -146,7 +145,7 @@ impl ColorReport<'_> {
                 format!("looked up, {interpolation}, a mixture of {n} materials")
             }
         };
-        let judgment = match self.de2000 {
+        let remark = match self.de2000 {
             found if found <= CubeSummary::EXACT_DE2000 => ", exact",
             found if found > VISIBLE_DE2000 => ", visibly off",
             _ => "",
@@ -154,9 +153,9 @@ impl ColorReport<'_> {
         let mut lines = Lines::default();
         lines
             .add("color", format_args!("{} ({r}, {g}, {b})", self.rgb_space))
-            .add("stands", self.standing.text())
+            .add("reachable", self.standing.text())
             .add("material", material)
-            .add("ΔE00", format_args!("{:.4}{judgment}", self.de2000));
+            .add("ΔE00", format_args!("{:.4}{remark}", self.de2000));
         if let Some(plot) = &self.plot {
             lines.add("plot", plot);
         }
@@ -186,14 +185,9 @@ impl ColorReport<'_> {
         table.to_string()
     }
 
+    /// A table of the dyes or the analytic curves of the parts that fluoresce.
     fn fluorescence(&self) -> String {
-        let (dyes, bells) = (self.dye_table(), self.bell_table());
-        dyes.or(bells).unwrap_or_else(|| "no fluorescence\n".into())
-    }
-
-    /// `None` where no part has dyes.
-    fn dye_table(&self) -> Option<String> {
-        let mut table = Table::new([
+        let mut dyes = Table::new([
             ("part", Side::Right),
             ("concentration", Side::Right),
             ("share", Side::Right),
@@ -201,47 +195,43 @@ impl ColorReport<'_> {
             ("share", Side::Right),
             ("dye", Side::Left),
         ]);
-        let mut found = false;
-        for (number, part) in (1..).zip(&self.parts) {
-            if let Some(FluorescenceReport::Dyes { dye_a, dye_b, weight, concentration }) =
-                &part.fluorescence
-            {
-                found = true;
-                table.add([
-                    format!("{number}"),
-                    format!("{concentration:.4}"),
-                    format!("{:.4}", 1.0 - weight),
-                    (*dye_a).to_owned(),
-                    format!("{weight:.4}"),
-                    (*dye_b).to_owned(),
-                ]);
-            }
-        }
-        found.then(|| table.to_string())
-    }
-
-    /// `None` where no part has bells.
-    fn bell_table(&self) -> Option<String> {
         let head = ["part", "concentration", "emission peak nm", "Stokes shift nm"];
-        let mut table = Table::new(head.map(|name| (name, Side::Right)));
-        let mut found = false;
+        let mut analytic = Table::new(head.map(|name| (name, Side::Right)));
         for (number, part) in (1..).zip(&self.parts) {
-            if let Some(FluorescenceReport::Analytic {
-                emission_peak_nm,
-                stokes_shift_nm,
-                concentration,
-            }) = &part.fluorescence
-            {
-                found = true;
-                table.add([
-                    format!("{number}"),
-                    format!("{concentration:.4}"),
-                    format!("{emission_peak_nm:.2}"),
-                    format!("{stokes_shift_nm:.2}"),
-                ]);
+            let number = number.to_string();
+            match &part.fluorescence {
+                Some(FluorescenceReport::Dyes { dye_a, dye_b, weight, concentration }) => {
+                    dyes.add([
+                        number,
+                        format!("{concentration:.4}"),
+                        format!("{:.4}", 1.0 - weight),
+                        (*dye_a).to_owned(),
+                        format!("{weight:.4}"),
+                        (*dye_b).to_owned(),
+                    ]);
+                }
+                Some(FluorescenceReport::Analytic {
+                    emission_peak_nm,
+                    stokes_shift_nm,
+                    concentration,
+                }) => {
+                    analytic.add([
+                        number,
+                        format!("{concentration:.4}"),
+                        format!("{emission_peak_nm:.2}"),
+                        format!("{stokes_shift_nm:.2}"),
+                    ]);
+                }
+                None => {}
             }
         }
-        found.then(|| table.to_string())
+        if !dyes.is_empty() {
+            dyes.to_string()
+        } else if !analytic.is_empty() {
+            analytic.to_string()
+        } else {
+            "no fluorescence\n".into()
+        }
     }
 
     fn colors(&self) -> String {
@@ -254,7 +244,7 @@ impl ColorReport<'_> {
         let Self { rgb_space: space, illuminant: own, adaptation, .. } = self;
         format!(
             "{table}\
-             RGB is linear {space}, adaptation {adaptation}. White is Y = 1 under each light but the\n\
+             RGB is linear {space}, adaptation {adaptation}. White has Y = 1 under each light except the\n\
              lamp, which has as much power as {own} and is seen by an observer adapted to {own}.\n"
         )
     }

@@ -1,4 +1,4 @@
-//! `upglow examples`: pictures to try the other commands with.
+//! `upglow examples`: draws pictures to try the other commands on.
 
 use std::path::Path;
 

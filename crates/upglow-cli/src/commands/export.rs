@@ -1,4 +1,4 @@
-//! `upglow export`: a cube for other programs.
+//! `upglow export`: converts a cube for other programs.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -25,7 +25,7 @@ struct ExportReport {
     format: &'static str,
     bytes: u64,
     nodes: usize,
-    /// Files that the exported one needs beside it.
+    /// Files that the exported file refers to.
     textures: Vec<String>,
 }
 
@@ -53,8 +53,8 @@ pub(crate) fn run(args: &ExportArgs, console: &Console) -> Result<(), Failure> {
     })
 }
 
-/// The source of a shader, and the files of its textures, which are written first: a source stands
-/// nowhere without them.
+/// Writes the textures of a shader, and returns its source and their names. The source is written
+/// last, so that it never exists without its textures.
 fn shader(
     args: &ExportArgs,
     cube: &Cube,
@@ -77,14 +77,15 @@ fn shader(
     Ok((shader.source.into_bytes(), names))
 }
 
-/// The format that was named, or that the output's suffix names.
+/// The format given by the option or by the suffix of the output.
 fn kind(args: &ExportArgs) -> Result<ExportFormat, Failure> {
     let suffix = args.output.extension().and_then(|suffix| suffix.to_str()).unwrap_or_default();
-    let by_suffix = ExportFormat::named(suffix).ok();
-    let kind = args.format.or(by_suffix).ok_or_else(|| {
+    let from_suffix = ExportFormat::named(suffix).ok();
+    let kind = args.format.or(from_suffix).ok_or_else(|| {
         let names: Vec<&str> = ExportFormat::ALL.iter().map(|format| format.name()).collect();
         let names = names.join(", ");
-        let message = format!("not given, expected one of {names}, or an output that ends so");
+        let message =
+            format!("not given, expected one of {names}, or an output with such a suffix");
         Failure::option("--format", message)
     })?;
     let resolution = ("--resolution", args.resolution.is_some(), &[ExportFormat::Coeff][..]);
@@ -92,13 +93,13 @@ fn kind(args: &ExportArgs) -> Result<ExportFormat, Failure> {
     Ok(kind)
 }
 
-/// The size of the tables that Mitsuba 3 and pbrt-v4 bring.
+/// The resolution of the tables that Mitsuba 3 and pbrt-v4 include.
 const TABLE_RESOLUTION: usize = 64;
 
-/// A table of reflectances for the cube's RGB space, light and slope limit, and its nodes.
+/// A table of reflectances for the cube's RGB space, light and slope limit, and its number of nodes.
 fn coeff(args: &ExportArgs, cube: &Cube, console: &Console) -> Result<(Vec<u8>, usize), Failure> {
     if !matches!(cube.model(), Model::Reflectance) {
-        warn("a table of coefficients has no fluorescence: colors that need it come out duller");
+        warn("a coefficient table has no fluorescence: colors that need it become duller");
     }
     let resolution = args.resolution.unwrap_or(TABLE_RESOLUTION);
     let fitted = console.work(args.threads, |bar| {
@@ -111,14 +112,14 @@ fn coeff(args: &ExportArgs, cube: &Cube, console: &Console) -> Result<(Vec<u8>, 
     Ok((table.to_bytes(), table.nodes().len()))
 }
 
-/// All nodes, red fastest. Numbers are printed with as many digits as lead back to them.
+/// All nodes, red fastest. Numbers have as many digits as are needed to read them back exactly.
 fn csv(cube: &Cube) -> String {
     let mut text = HEADER.to_owned() + "\n";
     for (index, node) in cube.nodes().iter().enumerate() {
         let rgb = cube.node_rgb(index).0.map(|v| v.to_string()).join(",");
         let shape = shape_cells(node);
         let fluorescence = fluorescence_cells(node, cube.model()).join(",");
-        // Writing to a string does not fail.
+        // Writing to a string cannot fail.
         let _ = writeln!(text, "{rgb},{shape},{fluorescence},{}", node.de2000);
     }
     text
@@ -135,8 +136,8 @@ fn shape_cells(node: &Node) -> String {
     format!("{c0},{c1},{c2},{features}")
 }
 
-/// First and second dye, weight, concentration, emission peak, Stokes shift: empty where the model
-/// has none, all empty where the node does not fluoresce.
+/// First and second dye, weight, concentration, emission peak, Stokes shift. Cells that do not apply
+/// to the model are empty, and all are empty if the node does not fluoresce.
 fn fluorescence_cells(node: &Node, model: &Model) -> [String; 6] {
     let [first, second, third] = node.fluorescence;
     let number = |value: f32| value.to_string();
@@ -155,7 +156,7 @@ fn fluorescence_cells(node: &Node, model: &Model) -> [String; 6] {
     }
 }
 
-/// A cell of text; in double quotes where it holds a separator.
+/// A cell of text, in double quotes if it contains a separator.
 fn quoted(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))

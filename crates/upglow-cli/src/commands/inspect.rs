@@ -1,4 +1,4 @@
-//! `upglow inspect`: what a cube contains.
+//! `upglow inspect`: shows the contents of a cube.
 
 use serde::Serialize;
 use upglow::{AnalyticModel, Cube, DyeModel, DyeOptions, FitRecord, Model};
@@ -51,7 +51,7 @@ pub(crate) fn run(args: InspectArgs, console: &Console) -> Result<(), Failure> {
     }
     let given = [("--space", args.space.is_some()), ("--illuminant", args.illuminant.is_some())];
     if let Some((option, _)) = given.into_iter().find(|(_, given)| *given) {
-        let message = "given for a cube, which stores its own; expected a coefficient table";
+        let message = "given for a cube, which stores its own, expected a coefficient table";
         return Err(Failure::option(option, message));
     }
     let cube = files::read_cube(&args.file)?;
@@ -87,7 +87,7 @@ impl<'a> ModelReport<'a> {
             Self::Dyes { set, dyes, options } => {
                 let density = options
                     .optical_density
-                    .map_or("none, a thin solution".into(), |a| a.to_string());
+                    .map_or("that of a thin solution".into(), |a| a.to_string());
                 lines
                     .add("model", "dyes")
                     .add("dyes", format_args!("{set}, {} in a ring", dyes.len()))
@@ -107,7 +107,7 @@ impl<'a> ModelReport<'a> {
         }
     }
 
-    /// The dyes as a table; nothing for other models.
+    /// The dyes as a table; empty for other models.
     fn dye_table(&self) -> String {
         let Self::Dyes { dyes, .. } = self else { return String::new() };
         let mut table = Table::new([
@@ -127,7 +127,7 @@ impl<'a> ModelReport<'a> {
             ]);
             sources.add(dye.name, dye.provenance);
         }
-        format!("\n{table}\nWhere the dyes come from\n{sources}")
+        format!("\n{table}\nSources of the dyes\n{sources}")
     }
 }
 

@@ -1,4 +1,4 @@
-//! `upglow inspect` of a coefficient table, ours or another program's.
+//! `upglow inspect` for coefficient tables of any program.
 
 use std::fs::File;
 use std::io::Read as _;
@@ -14,7 +14,7 @@ use crate::args::InspectArgs;
 use crate::output::Lines;
 use crate::plan;
 
-/// Random colors of the round trip, and the number they start from.
+/// Number and seed of the random colors of the round trip.
 const POINTS: usize = 10_000;
 const SEED: u64 = 0;
 
@@ -23,7 +23,7 @@ struct TableReport {
     file: String,
     bytes: u64,
     resolution: usize,
-    /// Whether it ends with weights that integrate a reflectance, as rgb2spec needs since 2026.
+    /// Whether it ends with weights that integrate a reflectance, as rgb2spec requires since 2026.
     integrator: bool,
     rgb_space: String,
     illuminant: String,
@@ -33,7 +33,7 @@ struct TableReport {
     max_de2000: f64,
 }
 
-/// Whether a file begins as coefficient tables do.
+/// Whether a file starts with the magic number of coefficient tables.
 pub(super) fn is_table(path: &Path) -> bool {
     let mut start = [0; 4];
     File::open(path).and_then(|mut file| file.read_exact(&mut start)).is_ok() && &start == b"SPEC"
@@ -75,7 +75,7 @@ impl Report for TableReport {
             .add("kind", "coefficient table, reflectance only")
             .add("resolution", format_args!("3 × {resolution} × {resolution} × {resolution}"))
             .add("integrator", if self.integrator { "yes" } else { "no" })
-            .add("judged as", format_args!("{} under {}", self.rgb_space, self.illuminant))
+            .add("interpreted as", format_args!("{} under {}", self.rgb_space, self.illuminant))
             .add("round trip", format_args!("{points} random colors"))
             .add("mean ΔE00", format_args!("{mean_de2000:.4}"))
             .add("95 % within", format_args!("{p95_de2000:.4}"))

@@ -1,4 +1,4 @@
-//! `upglow lint`: whether files are well-formed spectral EXR.
+//! `upglow lint`: checks whether files are well-formed spectral EXR.
 
 use serde::Serialize;
 use upglow_image::{ExrReader, Form, Lint};
@@ -11,7 +11,7 @@ use crate::pictures;
 #[derive(Debug, Serialize)]
 struct LintReport {
     file: String,
-    /// What `upglow bake` made it as, if it did.
+    /// The form as which `upglow bake` wrote it, if it did.
     baked_as: Option<String>,
     well_formed: bool,
     #[serde(flatten)]
@@ -37,11 +37,11 @@ pub(crate) fn run(args: &LintArgs, console: &Console) -> Result<(), Failure> {
     }
     match broken[..] {
         [] => Ok(()),
-        [one] => Err(Failure::file(one, "broken, expected a well-formed spectral EXR")),
+        [one] => Err(Failure::file(one, "not well-formed, expected a well-formed spectral EXR")),
         [first, ref others @ ..] => {
             let others = others.len();
             let message =
-                format!("broken, like {others} others, expected well-formed spectral EXR");
+                format!("not well-formed, like {others} others, expected well-formed spectral EXR");
             Err(Failure::file(first, message))
         }
     }

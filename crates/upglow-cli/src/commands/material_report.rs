@@ -1,4 +1,4 @@
-//! The numbers of one material.
+//! The parameters of one material in reports.
 
 use serde::Serialize;
 use upglow::{Fluorescence, Model, Sigmoid};
@@ -21,7 +21,7 @@ impl From<Sigmoid> for ReflectanceReport {
     }
 }
 
-/// The same coefficients, without the sign of a negative zero.
+/// The same coefficients with negative zeros replaced by zeros.
 pub(super) fn unsigned_zeros(Sigmoid { c0, c1, c2 }: Sigmoid) -> Sigmoid {
     Sigmoid { c0: c0 + 0.0, c1: c1 + 0.0, c2: c2 + 0.0 }
 }

@@ -1,4 +1,4 @@
-//! The commands, each in its own file.
+//! The commands, one per file.
 
 mod bake;
 mod build;
@@ -14,10 +14,11 @@ mod material_report;
 mod read;
 mod verify;
 
-use crate::args::{Args, Command};
 use upglow_terminal::Failure;
 
-/// Does what was asked for.
+use crate::args::{Args, Command};
+
+/// Runs the command that was typed.
 pub(crate) fn run(Args { command, console }: Args) -> Result<(), Failure> {
     match command {
         Command::Build(args) => build::run(&args, &console),
@@ -35,7 +36,7 @@ pub(crate) fn run(Args { command, console }: Args) -> Result<(), Failure> {
     }
 }
 
-/// The program that has a command which was once here.
+/// Names the program that now has the command.
 fn moved(command: &str) -> Failure {
     let message =
         format!("now a command of the program upglow-study, run `upglow-study {command}`");

@@ -1,4 +1,4 @@
-//! `upglow read`: the spectrum or material of one texel.
+//! `upglow read`: shows the spectrum or material of one texel.
 
 use serde::Serialize;
 use upglow::{Fluorescence, Material, Model};
@@ -10,7 +10,7 @@ use crate::args::ReadArgs;
 use crate::output::{Lines, Side, Table};
 use crate::pictures;
 
-/// Where the texel is.
+/// The position of the texel.
 #[derive(Debug, Serialize)]
 struct Texel {
     file: String,
@@ -26,7 +26,7 @@ struct SpectrumReport {
     spectrum: SpectralTexel,
 }
 
-/// The six numbers of a baked material, or what they mean.
+/// The parameters of a baked material.
 #[derive(Debug, Serialize)]
 struct MaterialReport {
     #[serde(flatten)]
@@ -131,7 +131,8 @@ impl Report for MaterialReport {
 }
 
 impl SpectrumReport {
-    /// For each incident wavelength: the share that leaves at longer ones, and where most of it does.
+    /// The share of the light at an incident wavelength that leaves at longer ones, and the wavelength
+    /// at which most of it leaves.
     fn moved(&self, nm: f64) -> Option<(f32, f64)> {
         let row = || self.spectrum.reradiation.iter().filter(|(i, _, v)| *i == nm && *v > 0.0);
         let most = row().max_by(|a, b| a.2.total_cmp(&b.2))?;

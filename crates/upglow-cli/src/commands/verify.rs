@@ -1,4 +1,4 @@
-//! `upglow verify`: recomputes what a cube promises.
+//! `upglow verify`: recomputes the laws that a cube must obey.
 
 use serde::Serialize;
 use upglow::Interpolation;
@@ -40,7 +40,7 @@ pub(crate) fn run(args: &VerifyArgs, console: &Console) -> Result<(), Failure> {
     }
 }
 
-/// Names the law that is broken and the worst offender.
+/// Names the broken law and the worst offender.
 fn broken(check: &Check) -> String {
     let Check { name, value, unit, limit, violations, worst, .. } = check;
     let found = worst.as_ref().map_or_else(|| value.to_string(), Offender::to_string);

@@ -1,4 +1,4 @@
-//! Pictures of a material's curves.
+//! Figures of a material's curves.
 
 pub(crate) mod svg;
 
@@ -6,23 +6,23 @@ use upglow::{Bispectral, Material, Mixture, Model, Sigmoid};
 use upglow_color::{Colorimetry, Grid, LinearRgb, srgb_encoded};
 use upglow_svg::{byte, hex};
 
-/// First wavelength of every picture, nm.
+/// First wavelength of every figure, nm.
 const FIRST_NM: f64 = 300.0;
-/// Last wavelength of every picture, nm.
+/// Last wavelength of every figure, nm.
 const LAST_NM: f64 = 780.0;
 
-/// Less than this is no wider than a line from zero.
+/// A curve below this value cannot be told from zero.
 const VISIBLE: f64 = 1e-3;
 
 /// The curves of a material on [`Grid::FINE`].
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub(crate) struct Curves {
     pub(crate) wavelengths_nm: Vec<f64>,
-    /// Share of light reflected at its own wavelength, (1 − c·a)·r, 0..=1.
+    /// Share of light reflected without a change of wavelength, (1 − c·a)·r, 0..=1.
     pub(crate) reflectance: Vec<f64>,
-    /// Share of light absorbed by what fluoresces, c·a, 0..=1.
+    /// Share of light absorbed by the dyes, c·a, 0..=1.
     pub(crate) absorption: Vec<f64>,
-    /// What comes out by fluorescence under a light, 1 at its peak; zeros where nothing does.
+    /// Light emitted by fluorescence, relative to its peak; all zero without fluorescence.
     pub(crate) emission: Vec<f64>,
 }
 
@@ -41,7 +41,7 @@ impl Curves {
         self.emission.iter().any(|&value| value > 0.0)
     }
 
-    /// The points of a curve that a picture shows, without the zeros before and after it.
+    /// The visible points of a curve, without the zeros before and after it.
     fn lifted<'c>(&'c self, curve: &'c [f64]) -> impl Iterator<Item = (f64, f64)> + 'c {
         let above = |v: &f64| *v > VISIBLE;
         let first = curve.iter().position(above).unwrap_or(curve.len()).saturating_sub(1);
@@ -52,7 +52,7 @@ impl Curves {
         points.filter(|(nm, _)| (FIRST_NM..=LAST_NM).contains(nm))
     }
 
-    /// The points of a curve that a picture shows.
+    /// The points of a curve within the wavelengths of the figure.
     fn shown<'c>(&'c self, curve: &'c [f64]) -> impl Iterator<Item = (f64, f64)> + 'c {
         let range = FIRST_NM..=LAST_NM;
         let points = self.wavelengths_nm.iter().copied().zip(curve.iter().copied());
@@ -60,7 +60,7 @@ impl Curves {
     }
 }
 
-/// c·a at one wavelength: what the material would lack if it were white.
+/// c·a at one wavelength: what a white reflectance with the same dyes does not reflect.
 fn absorption(mixture: &Mixture<'_>, nm: f64) -> f64 {
     let of_part = |model: &Model, part: Material| {
         let white = Material { reflectance: Sigmoid::flat(1.0), ..part };
@@ -70,7 +70,7 @@ fn absorption(mixture: &Mixture<'_>, nm: f64) -> f64 {
     glowing.map(|(weight, part)| weight * of_part(mixture.model(), part)).sum()
 }
 
-/// The light that comes out by fluorescence, relative to its peak.
+/// Light emitted by fluorescence, relative to its peak.
 fn emission(mixture: &Mixture<'_>, colorimetry: &Colorimetry) -> Vec<f64> {
     let incident = || colorimetry.grid().wavelengths_nm().zip(colorimetry.irradiance());
     let at = |out_nm: f64| -> f64 {
@@ -85,31 +85,31 @@ fn emission(mixture: &Mixture<'_>, colorimetry: &Colorimetry) -> Vec<f64> {
     if peak > 0.0 { emitted.iter().map(|value| value / peak).collect() } else { emitted }
 }
 
-/// What a figure shows.
+/// The content of a figure.
 #[derive(Clone, Debug)]
 pub(crate) struct Figure<'a> {
     pub(crate) curves: &'a Curves,
-    /// The color asked for.
+    /// The requested color.
     pub(crate) target: Swatch,
     /// The color of the material.
     pub(crate) result: Swatch,
     pub(crate) caption: Vec<String>,
 }
 
-/// A color on a screen.
+/// An sRGB color for a screen.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Swatch {
     /// `#rrggbb`.
     pub(crate) hex: String,
-    /// Whether sRGB does not hold the color.
+    /// Whether the color is outside sRGB.
     pub(crate) clipped: bool,
 }
 
-/// A component this far outside 0..=1 is a color outside sRGB, not rounding.
+/// Components up to this far outside 0..=1 are due to rounding.
 const OUTSIDE: f64 = 1e-3;
 
 impl Swatch {
-    /// The nearest color that sRGB holds, component by component, from linear sRGB.
+    /// Linear sRGB, clipped by component.
     pub(crate) fn from_linear(rgb: LinearRgb) -> Self {
         let component = |v: f64| byte(255.0 * srgb_encoded(v.clamp(0.0, 1.0)));
         let inside = |v: &f64| (-OUTSIDE..=1.0 + OUTSIDE).contains(v);

@@ -15,7 +15,7 @@ const RIGHT: f64 = 636.0;
 const TOP: f64 = 28.0;
 const BOTTOM: f64 = 448.0;
 
-/// The value at the top: curves that reach 1 do not touch the frame.
+/// The value at the top, above 1 so that no curve touches the frame.
 const HIGHEST: f64 = 1.05;
 
 /// Left edge of the legend and the swatches.
@@ -23,9 +23,9 @@ const SIDE: f64 = 668.0;
 const SWATCH: f64 = 100.0;
 const SWATCH_TOP: f64 = TOP + 122.0;
 
-/// Longer lines of the caption would leave the page at the font's usual width.
+/// Longer lines of the caption would extend beyond the page.
 const CAPTION_LETTERS: usize = 31;
-/// Four lines and the dyes of four materials; more would leave the page.
+/// Four lines and the dyes of four materials; more would extend beyond the page.
 const CAPTION_LINES: usize = 12;
 const CAPTION_STEP: f64 = 18.0;
 
@@ -33,8 +33,8 @@ const FONT: &str = "'DejaVu Sans', Verdana, Arial, sans-serif";
 const INK: &str = "#222222";
 const FAINT: &str = "#dddddd";
 
-/// A curve's name, color, dashes and points. Colors keep apart for color-blind readers, dashes in
-/// print without color.
+/// A curve's name, color, dashes and points. Color-blind readers can tell the colors apart, and in
+/// print without color the dashes.
 struct Stroke {
     name: &'static str,
     color: &'static str,
@@ -78,7 +78,7 @@ impl Stroke {
             .empty()
     }
 
-    /// A piece of the curve and its name, beside the plot.
+    /// A line in the style of the curve and its name, beside the plot.
     fn legend(&self, row: u8) -> [String; 2] {
         let y = TOP + 12.0 + 24.0 * f64::from(row);
         let piece = line(SIDE, y, SIDE + 30.0, y, self.color)
@@ -187,7 +187,7 @@ fn outlined(rect: Element, [width, height]: [f64; 2], color: &str) -> String {
         .empty()
 }
 
-/// Target and result side by side, so that a difference shows at their common edge.
+/// Target and result side by side, so that a difference is visible at their common edge.
 fn swatches(figure: &Figure<'_>) -> Vec<String> {
     let pair = [("target", &figure.target, SIDE), ("material", &figure.result, SIDE + SWATCH)];
     let both = pair.into_iter().flat_map(|(name, Swatch { hex, .. }, left)| {
@@ -202,7 +202,7 @@ fn swatches(figure: &Figure<'_>) -> Vec<String> {
     both.chain([frame]).collect()
 }
 
-/// Lines under the swatches.
+/// The lines below the swatches.
 fn caption(figure: &Figure<'_>) -> Vec<String> {
     let clipped = figure.target.clipped || figure.result.clipped;
     let note = clipped.then(|| "outside sRGB, shown clipped".to_owned());
@@ -242,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn names_from_files_are_escaped_and_cut() {
+    fn names_from_files_are_escaped_and_shortened() {
         let curves = curves(1.0);
         let svg = draw(&figure(&curves, "<script>&\u{7}"));
         assert!(svg.contains("&lt;script&gt;&amp;</text>"));

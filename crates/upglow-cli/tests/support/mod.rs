@@ -1,4 +1,4 @@
-//! A folder to work in, and the program to run in it.
+//! A temporary folder in which tests run the program.
 #![expect(dead_code, reason = "each test file uses its part")]
 #![expect(clippy::unwrap_used, reason = "a test that cannot start has failed")]
 
@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use assert_cmd::Command;
 use serde_json::Value;
 
-/// What a run of the program left.
+/// The result of a run of the program.
 #[derive(Debug)]
 pub(crate) struct Run {
     pub(crate) status: i32,
@@ -15,7 +15,7 @@ pub(crate) struct Run {
     pub(crate) stderr: String,
 }
 
-/// An empty folder that goes away with its value.
+/// A temporary folder, deleted when dropped.
 pub(crate) struct Folder(tempfile::TempDir);
 
 /// The program's path.
@@ -54,7 +54,7 @@ impl Folder {
         names
     }
 
-    /// Runs the program with these words, split at blanks.
+    /// Runs the program with these arguments, separated by blanks.
     pub(crate) fn run(&self, words: &str) -> Run {
         let output = Command::new(program())
             .args(words.split_whitespace())
@@ -68,7 +68,7 @@ impl Folder {
         }
     }
 
-    /// Runs the program, which must do its work without a word on standard error.
+    /// Runs the program, which must succeed and print nothing on standard error.
     pub(crate) fn done(&self, words: &str) -> String {
         let run = self.run(words);
         assert_eq!((run.status, run.stderr.as_str()), (0, ""), "{words}");
@@ -80,7 +80,7 @@ impl Folder {
         serde_json::from_str(&self.done(&format!("--json {words}"))).unwrap()
     }
 
-    /// Runs the program, which must refuse with this status and one line, and change no file.
+    /// Runs the program, which must fail with this status and one line, and change no file.
     pub(crate) fn refused(&self, status: i32, words: &str) -> String {
         let before = self.names();
         let run = self.run(words);
@@ -98,13 +98,13 @@ pub(crate) fn one_line(stderr: &str) -> String {
     line.to_owned()
 }
 
-/// A file of curves over 300 to 830 nm in steps of 5 nm; `row` gives the cells after each wavelength.
+/// A file of curves over 300 to 830 nm in steps of 5 nm; `row` returns the cells after each wavelength.
 pub(crate) fn curves(columns: &str, row: impl Fn(u32) -> String) -> String {
     let rows = (300..=830).step_by(5).map(|nm| format!("{nm},{}\n", row(nm)));
     format!("wavelength_nm,{columns}\n{}", rows.collect::<String>())
 }
 
-/// A file of a dye that absorbs around one wavelength and emits 30 nm further on.
+/// A file of a dye that absorbs around one wavelength and emits 30 nm above it.
 pub(crate) fn dye(peak_nm: u32) -> String {
     curves("absorption,emission", |nm| {
         let bell = |center: u32| (-(f64::from(nm) - f64::from(center)).powi(2) / 800.0).exp();
@@ -112,7 +112,7 @@ pub(crate) fn dye(peak_nm: u32) -> String {
     })
 }
 
-/// A file of an observer: one bell each for long, middle and short wavelengths, 385 to 780 nm.
+/// A file of an observer: a bell curve each for long, middle and short wavelengths, 385 to 780 nm.
 pub(crate) fn eye() -> String {
     let rows = (385..=780).step_by(5).map(|nm| {
         let bell = |center: f64| (-(f64::from(nm) - center).powi(2) / 2500.0).exp();
