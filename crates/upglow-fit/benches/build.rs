@@ -1,4 +1,4 @@
-//! How long does a cube take? Ours, and a published table builder for plain reflectance as peer.
+//! How long does a cube take, and a table of reflectances by a published builder?
 
 use divan::Bencher;
 use rgb2spec::optimize::{gamut::Gamut, optimize};

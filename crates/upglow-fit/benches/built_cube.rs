@@ -1,7 +1,7 @@
-//! How long does it take to evaluate the materials of a cube as it is built by default?
+//! How long does it take to evaluate the materials of the default cube?
 //!
-//! The benches of `upglow` time made-up cubes, the worst there can be; here are the materials that
-//! a renderer meets, at random colors. Times are for [`CALLS`] evaluations.
+//! The benches of `upglow` use synthetic cubes, the worst case; this one uses the materials of a real
+//! cube at random colors. Times are for [`CALLS`] evaluations.
 
 use std::sync::LazyLock;
 
@@ -16,7 +16,7 @@ fn main() {
 }
 
 const CALLS: usize = 4096;
-/// So few that they stay in the second-level cache, and so many that no branch is learned.
+/// Few enough for the second-level cache, and too many for branch prediction to learn.
 const MATERIALS: usize = 1024;
 
 static TABLE: LazyLock<LookupTable> = LazyLock::new(|| {

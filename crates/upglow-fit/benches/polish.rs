@@ -1,4 +1,4 @@
-//! How long does one material a texel take?
+//! How long does one material per texel take?
 
 use std::hint::black_box;
 use std::sync::OnceLock;

@@ -1,4 +1,4 @@
-//! How long does it take to say what kind of material a texel needs?
+//! How long does the kind of material that a color needs take?
 
 use std::sync::OnceLock;
 
@@ -20,7 +20,7 @@ fn spread(index: u32) -> [f64; 3] {
     STEPS.map(|step| (f64::from(index) * step).fract())
 }
 
-/// Colors of paint and wood, away from the surface of what reflectances show.
+/// Colors of paint and wood, well inside the colors of reflectances.
 fn muted() -> Vec<LinearRgb> {
     let color = |[r, g, b]: [f64; 3]| LinearRgb([0.1 + 0.6 * r, 0.1 + 0.5 * g, 0.1 + 0.4 * b]);
     (0..TEXELS).map(spread).map(color).collect()
@@ -37,20 +37,20 @@ fn table() -> &'static StandingTable {
 }
 
 fn bench<T>(bencher: Bencher<'_, '_>, colors: &[LinearRgb], ask: impl Fn(LinearRgb) -> T + Sync) {
-    // What the first asks settle is not what the question is about.
+    // Examines the boxes, which is not to be measured.
     colors.iter().for_each(|&rgb| drop(black_box(ask(rgb))));
     bencher.counter(ItemsCount::new(colors.len())).bench(|| {
         colors.iter().for_each(|&rgb| drop(black_box(ask(rgb))));
     });
 }
 
-/// The kind of colors that are settled.
+/// The kind of colors in boxes of one kind.
 #[divan::bench]
 fn kind_of_muted_colors(bencher: Bencher<'_, '_>) {
     bench(bencher, &muted(), |rgb| table().kind(rgb));
 }
 
-/// The kind and the distance of colors that are settled.
+/// The kind and the distance of such colors.
 #[divan::bench]
 fn estimate_of_muted_colors(bencher: Bencher<'_, '_>) {
     bench(bencher, &muted(), |rgb| table().estimate(rgb));
@@ -62,7 +62,7 @@ fn kind_of_any_color(bencher: Bencher<'_, '_>) {
     bench(bencher, &any(), |rgb| table().kind(rgb));
 }
 
-/// The first look at any color, the table still empty.
+/// The same with an empty table.
 #[divan::bench(sample_count = 1, sample_size = 1)]
 fn first_look_at_any_color(bencher: Bencher<'_, '_>) {
     let colors = any();
@@ -72,7 +72,7 @@ fn first_look_at_any_color(bencher: Bencher<'_, '_>) {
     });
 }
 
-/// The search that the table saves.
+/// The search that the table replaces.
 #[divan::bench(sample_count = 3, sample_size = 1)]
 fn search_of_any_color(bencher: Bencher<'_, '_>) {
     let colors = any();

@@ -1,4 +1,4 @@
-//! One material for each texel: from a cube's blend to six numbers.
+//! One material per texel, instead of a blend of four.
 
 mod candidate;
 mod corner;
@@ -9,7 +9,7 @@ mod start;
 mod sums;
 mod texel;
 
-use upglow::{AnalyticModel, Cube, Fluorescence, LengthError, Model, Node};
+use upglow::{Cube, Fluorescence, LengthError, Model, Node};
 use upglow_color::{LinearRgb, Matrix3};
 
 use crate::fitter::Fitter;
@@ -22,16 +22,16 @@ use start::{Family, Glow};
 use sums::SingleSums;
 use texel::Texel;
 
-/// Finds one material for each of millions of colors: what a texture stores.
+/// Finds one material for each of millions of colors, for textures.
 ///
-/// A blend mixes four materials; a texture stores one. From the materials at the corners of a
-/// color's tetrahedron it starts near the color, and a few of Newton's steps of least length, in
-/// single precision, lead to it: neighbors end as neighbors.
+/// A blend mixes four materials; a texture stores one. The mean of the materials at the corners of a
+/// color's tetrahedron starts near the color, and a few Newton steps of least length, with sums in
+/// single precision, lead to it. Similar colors get similar materials.
 ///
-/// What it finds respects the cube's slope limit. Grays are flat and do not fluoresce where the
-/// cube's contract makes white the perfect diffuser, and between materials that do not fluoresce
-/// no material does. Each color is worked on alone: how an image is cut into batches, and what the
-/// processor can do, changes no bit.
+/// Materials respect the cube's slope limit. Grays are flat and do not fluoresce if the cube's contract
+/// makes white the perfect diffuser, and a material between some that do not fluoresce does not
+/// either. Each color is processed alone: results do not depend on how an image is divided into
+/// batches, or on the processor.
 ///
 /// # Examples
 ///
@@ -57,7 +57,7 @@ pub struct Polisher<'c> {
     fitter: Fitter,
     sums: SingleSums,
     corners: Vec<Corner>,
-    /// Of each pair of dyes.
+    /// Emission of each pair of dyes.
     emissions: Vec<Emission>,
     xyz_from_rgb: Matrix3,
     /// One over X, Y, Z of the perfect diffuser.
@@ -66,24 +66,15 @@ pub struct Polisher<'c> {
     slope_limit_per_nm: f64,
 }
 
-/// Ranges of the bells' emission peaks and Stokes shifts.
-const BELL_RANGES_NM: [[f64; 2]; 2] =
-    [AnalyticModel::EMISSION_PEAKS_NM, AnalyticModel::STOKES_SHIFTS_NM];
-
-/// A wavelength difference in the fits' unit.
-fn in_units(nm: f64) -> f64 {
-    nm / UNIT_NM
-}
-
-/// White differs from the perfect diffuser by less than this where grays are flat: rounding only.
+/// If grays are flat, white differs from the perfect diffuser by less than this: rounding only.
 const FLAT: f64 = 1e-9;
 
 impl<'c> Polisher<'c> {
-    /// Prepares the polishing of colors of a cube.
+    /// Prepares for the colors of a cube.
     ///
     /// # Errors
     ///
-    /// [`FitOptionsError`] if the cube's slope limit is one that no fit can keep.
+    /// [`FitOptionsError`] if the cube's slope limit is out of the range for fits.
     pub fn new(cube: &'c Cube) -> Result<Self, FitOptionsError> {
         let slope_max_per_nm = cube.fit().slope_max_per_nm;
         let options = FitOptions { slope_max_per_nm, ..FitOptions::default() };
@@ -117,16 +108,15 @@ impl<'c> Polisher<'c> {
         })
     }
 
-    /// One material for each RGB, which shows it wherever the corners' materials show theirs and
-    /// this fitter knows a single one that does.
+    /// One material for each RGB. It matches if the corners' materials match their colors, as far as
+    /// the search finds a single material that does.
     ///
-    /// `de2000` of a texel is at least what the color differs under the contract, sums over 5 nm:
-    /// that itself, or a bound below 0.01 where the color is matched. Where no material matches it
-    /// is the nearest found; it can be further from the color than the blend is, which is four
-    /// materials.
+    /// `de2000` of a texel is the difference from the color under the contract, by sums over 5 nm, or,
+    /// for a match, a bound below 0.01. If no material matches, the texel gets the nearest one found,
+    /// which can be further from the color than the blend of four materials.
     ///
-    /// An RGB with a component that is not a number in 0..=1 has no material: all numbers of its
-    /// texel are not-a-number. Returns how many those are.
+    /// An RGB with a component that is NaN or not in 0..=1 has no material: all numbers of its texel are
+    /// NaN. Returns how many there are.
     ///
     /// # Errors
     ///
@@ -135,10 +125,10 @@ impl<'c> Polisher<'c> {
         self.each(rgb, out, |rgb, corners| Texel::new(self, rgb, corners).polish())
     }
 
-    /// The same with one step instead of as many as it takes, and in less than half the time: most
-    /// colors are matched, but none is checked. `de2000` is not-a-number for all but grays.
+    /// The same with a single step, in less than half the time: most colors are matched, but none is
+    /// checked. `de2000` is NaN for all but grays.
     ///
-    /// What is outside has a reflectance of not-a-numbers. Returns how many those are.
+    /// An RGB with a component that is NaN or not in 0..=1 gets a texel of NaN. Returns how many there are.
     ///
     /// # Errors
     ///
@@ -166,26 +156,19 @@ impl<'c> Polisher<'c> {
             }
             out[texel] = match repeats.earlier(rgb, texel) {
                 Some(earlier) => out[earlier],
-                None => self.at(rgb[texel], &material),
+                None => {
+                    let rgb = LinearRgb(rgb[texel].map(f64::from));
+                    let corner = |(index, weight): (usize, f64)| (weight, &self.corners[index]);
+                    let corners = self.cube.corners(rgb);
+                    corners.map_or(NOWHERE, |corners| material(rgb, &corners.map(corner)))
+                }
             };
         }
         Ok(outside)
     }
-
-    #[inline(always)]
-    fn at(
-        &self,
-        [red, green, blue]: [f32; 3],
-        material: &impl Fn(LinearRgb, &Corners<'_>) -> Node,
-    ) -> Node {
-        let rgb = LinearRgb([f64::from(red), f64::from(green), f64::from(blue)]);
-        let Ok([a, b, c, d]) = self.cube.corners(rgb) else { return NOWHERE };
-        let corner = |(index, weight): (usize, f64)| (weight, &self.corners[index]);
-        material(rgb, &[corner(a), corner(b), corner(c), corner(d)])
-    }
 }
 
-/// What stands for no material.
+/// The texel of a color outside the cube.
 const NOWHERE: Node =
     Node { reflectance: [f32::NAN; 3], dye: 0, fluorescence: [f32::NAN; 3], de2000: f32::NAN };
 

@@ -1,59 +1,58 @@
-//! Where millions of colors stand: the answers of [`ColorSolids`](upglow_color::ColorSolids), from
-//! convexity instead of a search.
+//! Which kinds of material millions of colors need: the results of
+//! [`ColorSolids`](upglow_color::ColorSolids), from convexity instead of a search for each color.
 
 mod boxes;
-mod reach;
 
 use std::sync::OnceLock;
 
 use upglow_color::{Colorimetry, Contract, LinearRgb, Standing, StandingKind};
 
-use boxes::{BoxLattice, Cell};
-use reach::Reach;
+use boxes::{BoxLattice, Cell, FLUORESCENCE, REFLECTANCE, Reach};
 
-/// The answers of [`ColorSolids::standing`](upglow_color::ColorSolids::standing) under one contract, fast enough for every texel of a picture.
+/// The results of [`ColorSolids::standing`](upglow_color::ColorSolids::standing) under one contract,
+/// fast enough for every texel of a picture.
 ///
-/// Both solids of colors are convex. So a box of RGB is inside a solid if its eight corners are,
-/// and outside if one plane parts them all from it; only colors in boxes that a surface passes
-/// through need a search of their own. Boxes are sized by the color's largest channel, so dark
-/// colors are told apart as finely as bright ones, and each is settled when the first color falls
-/// in it. The answers do not depend on what was asked before, or by which thread.
+/// Both solids of colors are convex. So a box of RGB is inside a solid if its eight corners are, and
+/// outside if a plane separates them all from it; only colors in boxes that a surface passes through
+/// need a search. The size of boxes depends on the color's largest channel, so that they resolve dark
+/// colors as finely as bright ones. A box is examined at the first color in it. The results do not
+/// depend on earlier colors, or on threads.
 #[derive(Debug)]
 #[must_use]
 pub struct StandingTable {
     reach: Reach,
-    /// Black and white, which fill whole parts of pictures and lie on a surface.
+    /// Black and white, which are frequent in pictures and lie on a surface.
     known: [(LinearRgb, StandingKind); 2],
-    /// `[size][sign of blue, green, red]`.
+    /// `[size][signs of blue, green, red]`.
     lattices: Vec<OnceLock<BoxLattice>>,
 }
 
-/// Where a color stands, and about how far it is from what it is beyond.
+/// The kind of material that a color needs, and an estimate of how far outside it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 pub struct Estimate {
     /// Exactly the kind of [`StandingTable::standing`].
     pub kind: StandingKind,
-    /// Distance in XYZ to the nearest color of any reflectance, or, if the color is unreachable, of
-    /// any material. Interpolated, and never less than the distance itself; 0 for a reflectance.
+    /// Distance in XYZ to the nearest color of a reflectance, or, if the color is unreachable, of any
+    /// material. Interpolated, and never below the exact distance; 0 for a reflectance.
     pub distance: f64,
     /// ΔE00 to that color, interpolated; 0 for a reflectance.
     pub de2000: f64,
 }
 
-/// Largest size of a lattice is 2⁴ = 16: brighter colors than any that is fitted
-/// ([`crate::Fitter::BRIGHTEST`]) are rare enough for a search each.
+/// The largest lattice has size 2⁴ = 16, more than any color that is fitted
+/// ([`crate::Fitter::BRIGHTEST`]). Brighter colors are rare enough for a search each.
 const LARGEST_EXPONENT: i64 = 4;
 
-/// Smallest size is 2⁻¹³, less than the darkest level of 8 bits in sRGB. Smaller only helps darker
-/// colors, and larger sends dark pictures to the search.
+/// The smallest has size 2⁻¹³, less than the darkest value of 8 bits in sRGB. Smaller helps only darker
+/// colors; larger makes dark pictures need searches.
 const SMALLEST_EXPONENT: i64 = -13;
 
-/// Signs of three channels.
+/// Combinations of signs of three channels.
 const OCTANTS: usize = 8;
 
 impl StandingTable {
-    /// A table for `contract`, by sums over 5 nm; it fills as it is asked.
+    /// A table for `contract`, by sums over 5 nm; it is filled as it is used.
     pub fn new(contract: &Contract) -> Self {
         let reach = Reach::new(contract);
         let known = [0.0, 1.0].map(|v| (LinearRgb([v; 3]), reach.kind(LinearRgb([v; 3]))));
@@ -63,18 +62,19 @@ impl StandingTable {
         Self { reach, known, lattices }
     }
 
-    /// White, matrices and weights behind every answer.
+    /// White, matrices and weights of the contract, by sums over 5 nm.
     pub fn colorimetry(&self) -> &Colorimetry {
         &self.reach.colorimetry
     }
 
-    /// Where `rgb` stands, and how far it is beyond; a search for what is not a reflectance.
+    /// The kind of material that `rgb` needs, and the nearest colors that materials reach; takes a search
+    /// unless a reflectance reaches it.
     pub fn standing(&self, rgb: LinearRgb) -> Standing {
         let color = self.colorimetry().xyz_from_rgb(rgb);
         self.reach.solids.standing_of_kind(color, self.kind(rgb))
     }
 
-    /// What it takes to show `rgb`, in nanoseconds for most colors.
+    /// The kind of material that `rgb` needs; takes nanoseconds for most colors.
     ///
     /// # Examples
     ///
@@ -91,13 +91,13 @@ impl StandingTable {
         self.look(rgb).0
     }
 
-    /// What it takes to show `rgb`, and about how far it is beyond.
+    /// The kind of material that `rgb` needs, and an estimate of how far outside it is.
     pub fn estimate(&self, rgb: LinearRgb) -> Estimate {
         let (kind, lattice) = self.look(rgb);
         let [distance, de2000] = match (kind, lattice) {
             (StandingKind::Reflectance, _) => [0.0; 2],
-            (StandingKind::NeedsFluorescence, Some(at)) => at.interpolate(rgb, |c| c.reflectance),
-            (StandingKind::Unreachable, Some(at)) => at.interpolate(rgb, |c| c.fluorescence),
+            (StandingKind::NeedsFluorescence, Some(at)) => at.interpolate(rgb, REFLECTANCE),
+            (StandingKind::Unreachable, Some(at)) => at.interpolate(rgb, FLUORESCENCE),
             (_, None) => {
                 let beyond = self.standing(rgb).beyond();
                 [beyond.distance, beyond.de2000]
@@ -106,7 +106,7 @@ impl StandingTable {
         Estimate { kind, distance, de2000 }
     }
 
-    /// The kind, and the lattice with the box around `rgb`, where there is one.
+    /// The kind, and the lattice with the box around `rgb`; `None` if none is large enough.
     fn look(&self, rgb: LinearRgb) -> (StandingKind, Option<&BoxLattice>) {
         let Some(mut lattice) = self.lattice(rgb) else {
             return (self.reach.kind(rgb), None);
@@ -131,7 +131,7 @@ impl StandingTable {
     fn lattice(&self, rgb: LinearRgb) -> Option<&BoxLattice> {
         let [r, g, b] = rgb.0;
         let largest = r.abs().max(g.abs()).max(b.abs());
-        // A sum is finite only if its parts are, where none is near the largest number.
+        // The sum is finite only if all components are.
         if !(r + g + b).is_finite() {
             return None;
         }
@@ -143,11 +143,11 @@ impl StandingTable {
     }
 }
 
-/// The least k for which `value` ≤ 2ᵏ, for a number ≥ 0; −1021 for all that are less than normal.
+/// The least k for which `value` ≤ 2ᵏ, for numbers ≥ 0; −1021 for subnormal numbers.
 fn exponent_above(value: f64) -> i64 {
     const MANTISSA_BITS: u32 = 52;
     const BIAS: i64 = 1023;
-    // One unit less in the last place, so that a power of two belongs to itself.
+    // One unit in the last place less, so that k of 2ᵏ is not k + 1.
     let below = value.to_bits().saturating_sub(1);
     (below >> MANTISSA_BITS).cast_signed() - BIAS + 1
 }
@@ -191,7 +191,7 @@ mod tests {
         })
     }
 
-    /// The answer without the table.
+    /// The result without the table.
     fn searched(table: &StandingTable, rgb: LinearRgb) -> Standing {
         let colorimetry = table.colorimetry();
         ColorSolids::new(colorimetry).standing(colorimetry.xyz_from_rgb(rgb))
@@ -208,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn the_search_behind_the_table_is_that_of_one_color() {
+    fn standings_equal_those_without_the_table() {
         for contract in contracts() {
             let table = StandingTable::new(&contract);
             for rgb in (0..100).map(color) {
@@ -218,18 +218,18 @@ mod tests {
     }
 
     #[test]
-    fn a_color_stands_where_the_search_says() {
+    fn kinds_equal_those_of_the_search() {
         contracts().iter().for_each(|contract| assert_same_answers(contract, 10_000));
     }
 
     #[test]
-    #[ignore = "slow: half a minute; the one above asks a tenth as many"]
-    fn slow_a_hundred_thousand_colors_stand_where_the_search_says() {
+    #[ignore = "slow: half a minute; the test above has a tenth as many colors"]
+    fn slow_kinds_of_a_hundred_thousand_colors_equal_those_of_the_search() {
         contracts().iter().for_each(|contract| assert_same_answers(contract, 100_000));
     }
 
     #[test]
-    fn corners_of_the_cube_and_odd_numbers_stand_where_the_search_says() {
+    fn kinds_of_corners_and_unusual_numbers_equal_those_of_the_search() {
         let values = [0.0, -0.0, 1.0, 0.5, 2.0, 16.0, 17.0, 1e30, -1.0, 1e-300, f64::MIN_POSITIVE];
         let table = StandingTable::new(&Contract::default());
         let n = values.len();
@@ -240,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_is_answered_and_does_not_panic() {
+    fn nan_and_infinity_are_unreachable() {
         let table = StandingTable::new(&Contract::default());
         for odd in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX] {
             for k in 0..3 {
@@ -261,7 +261,7 @@ mod tests {
             let estimate = table.estimate(rgb);
             assert_eq!(estimate.kind, table.kind(rgb));
             let gap = table.standing(rgb).beyond().distance;
-            // Rounding of sums, and the gap at which a search stops.
+            // Rounding of sums, and the tolerance of the search.
             assert!(estimate.distance >= gap - 1e-8, "{rgb:?} {estimate:?} {gap}");
             if rgb.0.iter().all(|v| *v <= 1.0) && gap > 0.0 {
                 excess += estimate.distance - gap;
@@ -272,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn within_reach_the_distance_is_nothing_and_beyond_it_is_measured() {
+    fn the_distance_is_0_within_reach_and_positive_outside() {
         let table = StandingTable::new(&Contract::default());
         let gray = table.standing(LinearRgb([0.5; 3]));
         assert_eq!((gray.reflectance.distance, gray.fluorescence.de2000), (0.0, 0.0));

@@ -1,4 +1,4 @@
-//! Whole cubes: how good they are, and that they do not depend on how they were made.
+//! Whole cubes: their quality, and that they do not depend on the number of threads.
 
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -28,9 +28,9 @@ fn quality(model: &Model, slope_max_per_nm: Option<f64>) -> (f64, f64) {
     (100.0 * summary.within_1 as f64 / summary.nodes as f64, summary.mean_de2000)
 }
 
-/// The bounds are what an exhaustive search with the same model reached, less 0.4 points and 0.015.
+/// The bounds are the results of an exhaustive search with the same model, less 0.4 points and 0.015.
 #[test]
-fn acescg_is_shown_as_well_as_an_exhaustive_search_shows_it() {
+fn acescg_is_matched_as_well_as_by_an_exhaustive_search() {
     let (within_1, mean) = quality(&dyes("konig8", None), Some(0.01));
     assert!(within_1 >= 78.5 && mean <= 0.83, "{within_1} {mean}");
     let (within_1, mean) = quality(&dyes("konig8", Some(4.0)), Some(0.01));
@@ -39,18 +39,18 @@ fn acescg_is_shown_as_well_as_an_exhaustive_search_shows_it() {
     assert!(within_1 >= 97.0 && mean <= 0.079, "{within_1} {mean}");
 }
 
-/// The most that a node of the default build may be worse than the exhaustive search, ΔE00: a
-/// fiftieth of what an eye can tell.
+/// How much worse than the exhaustive search a node of the default build may be, ΔE00: a fiftieth of a
+/// visible difference.
 const WORSE_THAN_EXHAUSTIVE: f64 = 0.02;
 
 #[test]
-fn no_random_node_is_worse_than_an_exhaustive_search_makes_it() {
+fn no_random_node_is_worse_than_with_an_exhaustive_search() {
     let model = dyes("konig8", None);
     let cube = build(&model, FitOptions::default(), 32);
     let options = FitOptions { method: Method::Exhaustive, ..FitOptions::default() };
     let fitter = Fitter::new(&Contract::default(), &model, options).unwrap();
     let mut worst: f64 = 0.0;
-    // A step without a common factor with the grid visits nodes all over it.
+    // A step that is coprime to the number of nodes visits the whole cube.
     for index in (0..500).map(|i| i * 12_289 % 32_768) {
         let best = fitter.fit(cube.node_rgb(index)).unwrap().de2000;
         worst = worst.max(f64::from(cube.nodes()[index].de2000) - best.max(0.01));
@@ -60,7 +60,7 @@ fn no_random_node_is_worse_than_an_exhaustive_search_makes_it() {
 }
 
 #[test]
-fn the_same_bytes_come_from_any_number_of_threads() {
+fn cubes_do_not_depend_on_the_number_of_threads() {
     for model in [dyes("open8", None), Model::Analytic(AnalyticModel::default())] {
         let bytes = [1, 2, 5].map(|threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -85,7 +85,7 @@ fn the_stored_difference_is_that_of_the_stored_material() {
 }
 
 #[test]
-fn between_exact_corners_every_color_is_exact() {
+fn colors_between_exact_corners_are_exact() {
     let cube = build(&dyes("konig8", None), FitOptions::default(), 9);
     let colorimetry = cube.contract().on(Grid::FIT);
     let sums = ModelOnGrid::new(cube.model(), &colorimetry);
@@ -128,7 +128,7 @@ impl Watch for StopAtOnce {
 }
 
 #[test]
-fn a_stopped_build_says_so() {
+fn a_stopped_build_returns_an_error() {
     let model = dyes("konig8", None);
     let watch = StopAtOnce::default();
     let stopped = build_cube(&Contract::default(), &model, FitOptions::default(), 16, &watch);

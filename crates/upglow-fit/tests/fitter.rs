@@ -1,4 +1,4 @@
-//! One color at a time: what must hold for any of them, and for some in particular.
+//! Fits of single colors: what must hold for all of them, and for some in particular.
 
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -36,7 +36,7 @@ fn assert_valid(model: &Model, fit: &Fit) {
 }
 
 #[test]
-fn white_is_the_perfect_diffuser_and_black_gives_nothing_back() {
+fn white_is_the_perfect_diffuser_and_black_reflects_nothing() {
     let model = konig8(DyeOptions::default());
     for value in [1.0, 0.0] {
         let fit = fit(&model, [value; 3]);
@@ -58,7 +58,7 @@ fn grays_are_flat_and_do_not_fluoresce() {
 }
 
 #[test]
-fn a_magenta_beyond_all_reflectances_is_shown_with_dyes() {
+fn a_magenta_that_no_reflectance_reaches_needs_dyes() {
     let model = konig8(DyeOptions::default());
     let magenta = fit(&model, [0.9, 0.0, 0.9]);
     let passive = fit(&Model::Reflectance, [0.9, 0.0, 0.9]);
@@ -68,7 +68,7 @@ fn a_magenta_beyond_all_reflectances_is_shown_with_dyes() {
 }
 
 #[test]
-fn a_measured_fluorescent_orange_brighter_than_white_is_shown_by_dense_dyes() {
+fn a_measured_fluorescent_orange_brighter_than_white_is_matched_by_dense_dyes() {
     let model = konig8(DyeOptions { optical_density: Some(4.0), ..DyeOptions::default() });
     let orange = fit(&model, [1.58, 0.34, 0.05]);
     assert!(orange.de2000 <= 0.1, "{orange:?}");
@@ -76,7 +76,7 @@ fn a_measured_fluorescent_orange_brighter_than_white_is_shown_by_dense_dyes() {
 }
 
 #[test]
-fn pure_green_which_nothing_shows_still_gets_the_nearest_material() {
+fn unreachable_pure_green_gets_a_near_material() {
     let model = konig8(DyeOptions::default());
     let green = fit(&model, [0.0, 1.0, 0.0]);
     assert!(green.de2000 > 1.0 && green.de2000 < 30.0, "{green:?}");
@@ -84,7 +84,7 @@ fn pure_green_which_nothing_shows_still_gets_the_nearest_material() {
 }
 
 #[test]
-fn what_is_no_color_is_refused_with_its_channel() {
+fn errors_name_the_channel_that_is_out_of_range() {
     let fitter = fitter(&Model::Reflectance, FitOptions::default());
     for (rgb, channel) in
         [([f64::NAN, 0.0, 0.0], "red"), ([0.0, -0.1, 0.0], "green"), ([0.0, 0.0, 11.0], "blue")]
@@ -98,8 +98,8 @@ fn what_is_no_color_is_refused_with_its_channel() {
 
 #[test]
 fn a_color_that_needs_little_fluorescence_gets_little() {
-    // Between a color that reflectance shows and one that it does not, the concentration rises
-    // from nothing without a jump to full strength.
+    // From a color that a reflectance matches to one that none does, the concentration rises from 0
+    // without a jump.
     let model = konig8(DyeOptions::default());
     let fitter = fitter(&model, FitOptions::default());
     let at = |t: f64| fitter.fit(LinearRgb([0.5, 0.5 - 0.45 * t, 0.5])).unwrap();
@@ -110,7 +110,7 @@ fn a_color_that_needs_little_fluorescence_gets_little() {
 }
 
 #[test]
-fn every_metric_reaches_a_color_that_can_be_shown() {
+fn every_metric_matches_a_reachable_color() {
     let model = konig8(DyeOptions::default());
     for &metric in Metric::ALL {
         let options = FitOptions { metric, ..FitOptions::default() };

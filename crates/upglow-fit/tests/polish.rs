@@ -1,4 +1,4 @@
-//! Polished textures: the promises of one material a texel.
+//! Polished textures: what one material per texel must fulfill.
 
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -9,7 +9,7 @@ use upglow::{
 use upglow_color::{Colorimetry, Contract, Grid, LinearRgb, Metric};
 use upglow_fit::{FitOptions, Polisher, Unwatched, build_cube};
 
-/// What counts as a match, ΔE00: a hundredth of what an eye can tell.
+/// What counts as a match, ΔE00: a hundredth of a visible difference.
 const EXACT: f64 = 0.01;
 
 fn dyes(options: DyeOptions) -> Model {
@@ -55,14 +55,14 @@ fn polished(polisher: &Polisher<'_>, rgb: &[[f32; 3]]) -> Vec<Node> {
     out
 }
 
-/// What is known about a texel and its material.
-struct Judge<'c> {
+/// Measures the materials of texels.
+struct Meter<'c> {
     cube: &'c Cube,
     colorimetry: Colorimetry,
     sums: ModelOnGrid,
 }
 
-impl<'c> Judge<'c> {
+impl<'c> Meter<'c> {
     fn new(cube: &'c Cube) -> Self {
         let colorimetry = cube.contract().on(Grid::FIT);
         Self { cube, sums: ModelOnGrid::new(cube.model(), &colorimetry), colorimetry }
@@ -91,9 +91,9 @@ impl<'c> Judge<'c> {
     }
 }
 
-/// How well texels are shown.
+/// How well the materials of texels match.
 #[derive(Debug, Default)]
-struct Tally {
+struct Quality {
     exact: usize,
     corners_exact: usize,
     lost: usize,
@@ -103,57 +103,57 @@ struct Tally {
     greatest: f64,
 }
 
-fn tally(judge: &Judge<'_>, rgb: &[[f32; 3]], nodes: &[Node]) -> Tally {
-    let mut tally = Tally::default();
+fn quality(meter: &Meter<'_>, rgb: &[[f32; 3]], nodes: &[Node]) -> Quality {
+    let mut quality = Quality::default();
     for (&rgb, node) in rgb.iter().zip(nodes) {
-        let (de2000, blend) = (judge.de2000(rgb, node), judge.blend_de2000(rgb));
-        let corners_exact = judge.corners_match(rgb);
-        tally.exact += usize::from(de2000 <= EXACT);
-        tally.corners_exact += usize::from(corners_exact);
-        tally.lost += usize::from(corners_exact && de2000 > EXACT);
-        tally.far += usize::from(de2000 > blend + 0.5);
-        tally.mean += de2000 / nodes.len() as f64;
-        tally.blend_mean += blend / nodes.len() as f64;
-        tally.greatest = tally.greatest.max(de2000 - blend);
+        let (de2000, blend) = (meter.de2000(rgb, node), meter.blend_de2000(rgb));
+        let corners_exact = meter.corners_match(rgb);
+        quality.exact += usize::from(de2000 <= EXACT);
+        quality.corners_exact += usize::from(corners_exact);
+        quality.lost += usize::from(corners_exact && de2000 > EXACT);
+        quality.far += usize::from(de2000 > blend + 0.5);
+        quality.mean += de2000 / nodes.len() as f64;
+        quality.blend_mean += blend / nodes.len() as f64;
+        quality.greatest = quality.greatest.max(de2000 - blend);
     }
-    tally
+    quality
 }
 
 #[test]
 fn where_the_corners_match_the_material_matches() {
     for model in models() {
         let cube = cube(&model, 10);
-        let judge = Judge::new(&cube);
+        let meter = Meter::new(&cube);
         let rgb = random(3000);
         let nodes = polished(&Polisher::new(&cube).unwrap(), &rgb);
-        let tally = tally(&judge, &rgb, &nodes);
-        println!("{}: {tally:?}", model.name());
-        assert!(tally.corners_exact > 400);
-        assert_eq!(tally.lost, 0, "{}", model.name());
+        let quality = quality(&meter, &rgb, &nodes);
+        println!("{}: {quality:?}", model.name());
+        assert!(quality.corners_exact > 400);
+        assert_eq!(quality.lost, 0, "{}", model.name());
     }
 }
 
 #[test]
-fn a_miss_is_hardly_ever_much_greater_than_the_blends() {
+fn a_miss_is_rarely_much_greater_than_that_of_the_blend() {
     for model in models() {
         let cube = cube(&model, 10);
         let rgb = random(3000);
         let nodes = polished(&Polisher::new(&cube).unwrap(), &rgb);
-        let tally = tally(&Judge::new(&cube), &rgb, &nodes);
-        assert!(tally.mean < tally.blend_mean, "{tally:?}");
-        // Four reflectances in one cell show saturated colors that no single one does.
+        let quality = quality(&Meter::new(&cube), &rgb, &nodes);
+        assert!(quality.mean < quality.blend_mean, "{quality:?}");
+        // A mixture of four reflectances reaches saturated colors that no single one does.
         let most = if model == Model::Reflectance { 120 } else { 40 };
-        assert!(tally.far < most, "{tally:?}");
-        assert!(tally.exact > tally.corners_exact, "{tally:?}");
+        assert!(quality.far < most, "{quality:?}");
+        assert!(quality.exact > quality.corners_exact, "{quality:?}");
     }
 }
 
 #[test]
-fn every_material_keeps_the_limit_and_is_one_of_the_model() {
+fn every_material_keeps_the_limit_and_is_valid_for_the_model() {
     for model in models() {
         let cube = cube(&model, 6);
         let polisher = Polisher::new(&cube).unwrap();
-        let judge = Judge::new(&cube);
+        let meter = Meter::new(&cube);
         let limit = cube.fit().slope_max_per_nm.unwrap();
         let rgb = random(512);
         let mut fast = vec![Node::default(); rgb.len()];
@@ -163,7 +163,7 @@ fn every_material_keeps_the_limit_and_is_one_of_the_model() {
                 assert!(node.edge().to_sigmoid().steepest_slope_per_nm() <= limit, "{node:?}");
                 let is_passive = node.material(&model).fluorescence == Fluorescence::None;
                 let corner_glows = |i| cube.node_material(i).fluorescence != Fluorescence::None;
-                assert!(is_passive || !judge.corners(rgb, |i| !corner_glows(i)), "{rgb:?}");
+                assert!(is_passive || !meter.corners(rgb, |i| !corner_glows(i)), "{rgb:?}");
             }
             let measured = |node: &Node| Node { de2000: 0.0, ..*node };
             let nodes = nodes.iter().map(measured).collect();
@@ -174,17 +174,17 @@ fn every_material_keeps_the_limit_and_is_one_of_the_model() {
 }
 
 #[test]
-fn the_difference_told_is_that_of_the_material_or_a_bound() {
+fn the_stored_difference_is_that_of_the_material_or_a_bound() {
     // Single precision of colors, times the slope of Lab in the dark, and of what is stored.
     const SINGLE: f64 = 2e-3;
     for model in models() {
         let cube = cube(&model, 8);
-        let judge = Judge::new(&cube);
+        let meter = Meter::new(&cube);
         let rgb = random(2000);
         for (&rgb, node) in rgb.iter().zip(polished(&Polisher::new(&cube).unwrap(), &rgb)) {
-            let (told, found) = (f64::from(node.de2000), judge.de2000(rgb, &node));
-            assert!(found <= told + SINGLE, "{rgb:?} {found} {node:?}");
-            assert!(told <= EXACT || told <= found + SINGLE, "{rgb:?} {found} {node:?}");
+            let (stored, found) = (f64::from(node.de2000), meter.de2000(rgb, &node));
+            assert!(found <= stored + SINGLE, "{rgb:?} {found} {node:?}");
+            assert!(stored <= EXACT || stored <= found + SINGLE, "{rgb:?} {found} {node:?}");
         }
     }
 }
@@ -208,7 +208,7 @@ fn grays_are_flat_and_do_not_fluoresce() {
 }
 
 #[test]
-fn neighbors_end_as_neighbors() {
+fn similar_colors_get_similar_materials() {
     let cube = cube(&dyes(DyeOptions::default()), 10);
     let polisher = Polisher::new(&cube).unwrap();
     // From a soft green to a saturated magenta, which fluoresces.
@@ -230,11 +230,11 @@ fn neighbors_end_as_neighbors() {
 }
 
 #[test]
-fn batches_change_nothing() {
+fn results_do_not_depend_on_batches() {
     for model in models() {
         let cube = cube(&model, 6);
         let polisher = Polisher::new(&cube).unwrap();
-        // Each color twice: once it is found, once remembered.
+        // Each color twice, so that one of them is a repeat.
         let rgb = [random(300), random(300)].concat();
         let whole = polished(&polisher, &rgb);
         for size in [1, 7, 64] {
@@ -246,7 +246,7 @@ fn batches_change_nothing() {
 }
 
 #[test]
-fn what_is_outside_has_no_material_and_is_counted() {
+fn colors_outside_have_no_material_and_are_counted() {
     let cube = cube(&Model::Reflectance, 3);
     let polisher = Polisher::new(&cube).unwrap();
     let rgb = [
@@ -279,12 +279,12 @@ fn a_cube_without_a_limit_is_polished_too() {
     let cube = build_cube(&contract, &model, options, 8, &Unwatched).unwrap();
     let rgb = random(2000);
     let nodes = polished(&Polisher::new(&cube).unwrap(), &rgb);
-    let tally = tally(&Judge::new(&cube), &rgb, &nodes);
-    println!("{tally:?}");
-    assert!(tally.lost <= 20 && tally.mean < tally.blend_mean, "{tally:?}");
+    let quality = quality(&Meter::new(&cube), &rgb, &nodes);
+    println!("{quality:?}");
+    assert!(quality.lost <= 20 && quality.mean < quality.blend_mean, "{quality:?}");
 }
 
-/// What 20,000 random colors of the default cube showed, with room for another sequence.
+/// Shares of matches as found with 20,000 random colors, with a margin for other sequences.
 #[test]
 #[ignore = "slow"]
 fn slow_the_default_cube_is_polished_as_well_as_it_is_fitted() {
@@ -292,9 +292,9 @@ fn slow_the_default_cube_is_polished_as_well_as_it_is_fitted() {
         let cube = cube(&model, 32);
         let rgb = random(20_000);
         let nodes = polished(&Polisher::new(&cube).unwrap(), &rgb);
-        let tally = tally(&Judge::new(&cube), &rgb, &nodes);
-        println!("{}: {tally:?}", model.name());
-        assert_eq!(tally.lost, 0, "{}", model.name());
-        assert!(tally.exact as f64 > exact * 20_000.0 && tally.mean < tally.blend_mean);
+        let quality = quality(&Meter::new(&cube), &rgb, &nodes);
+        println!("{}: {quality:?}", model.name());
+        assert_eq!(quality.lost, 0, "{}", model.name());
+        assert!(quality.exact as f64 > exact * 20_000.0 && quality.mean < quality.blend_mean);
     }
 }

@@ -1,41 +1,41 @@
-//! Colors of materials by the solver's unknowns, in two charts of the reflectance.
+//! Colors of materials as functions of the unknowns, in two charts of the reflectance.
 
-use upglow::{Edge, Model};
+use upglow::{AnalyticModel, Edge, Model};
 
+use crate::polish::Polisher;
 use crate::polish::descent::{
     Bounds, Measure, Point, UNKNOWNS, Unknowns, Vector, dot, shortest_step, within,
 };
 use crate::polish::start::{Family, Glow};
 use crate::polish::sums::Shown;
-use crate::polish::{BELL_RANGES_NM, Polisher};
 use crate::problem::parabola::{MIDDLE_NM, Parabola, UNIT_NM, edge_of, scaled, sigmoid_of};
 use crate::problem::{EDGE_BOUND, LEVEL_BOUND};
 
-/// A color of fluorescence and reflectance: itself, and derivatives.
+/// The color of a material, and its derivatives.
 struct Shaded {
     color: Vector,
     by_parabola: [Vector; 3],
     by_glow: [Vector; 3],
 }
 
-/// A value of a reflectance stays this far from 0 and 1, where the parabola is infinite. Smaller is
-/// beyond single precision, larger cannot be black.
+/// Values of a reflectance stay this far from 0 and 1, where the parabola is infinite. Smaller exceeds
+/// single precision; larger is not black.
 const LEAST_VALUE: f64 = 1e-7;
-/// A step leaves a value at least this share of its distance from 0 and from 1: derivatives there
-/// say little of what is nearer.
+/// A step leaves at least this share of a value's distance from 0 and from 1: nearer, the derivatives
+/// are no longer valid.
 const VALUE_SHARE: f64 = 0.2;
-/// What a slope of twice the limit counts, in units of Lab: as much as the greatest color difference.
+/// The penalty for a slope of twice the limit, in units of Lab: the greatest color difference.
 pub(super) const STEEPNESS_WEIGHT: f64 = 100.0;
-/// Steep reflectances are brought to this share of the limit: no further step is needed where the
-/// slope is not quite linear in the unknowns.
+/// Steep reflectances are brought to this share of the limit: the slope is not quite linear in the
+/// unknowns, and a margin saves another step.
 const STEEPNESS_GOAL: f64 = 0.999;
 
-/// A reflectance in the chart of values: by its values at three wavelengths. Colors are nearly
+/// A reflectance in the chart of values: given by its values at three wavelengths. Colors are nearly
 /// linear in them, but the slope limit is a curved bound.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Shape {
+pub(super) struct ValueShape {
     pub(super) parabola: Parabola,
-    /// Derivatives of the parabola at each of the wavelengths by the value there.
+    /// Derivatives of the parabola at each of the wavelengths with respect to the value there.
     pub(super) scale: Vector,
 }
 
@@ -43,7 +43,7 @@ pub(super) struct Shape {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Candidate {
     pub(super) x: Unknowns,
-    pub(super) shape: Shape,
+    pub(super) shape: ValueShape,
     pub(super) steepness: Steepness,
 }
 
@@ -52,11 +52,11 @@ pub(super) struct Candidate {
 pub(super) struct Steepness {
     /// Its square, relative to the limit's.
     pub(super) squared: f64,
-    /// The parabola where the slope is greatest.
+    /// The value of the parabola where the slope is greatest.
     level: f64,
 }
 
-/// Values that have a parabola.
+/// The values moved to where they have a parabola.
 #[inline(always)]
 pub(super) fn inside(mut values: Vector) -> Vector {
     for r in &mut values {
@@ -65,7 +65,7 @@ pub(super) fn inside(mut values: Vector) -> Vector {
     values
 }
 
-/// How far a step may carry a value.
+/// The range of a value after a step.
 #[inline(always)]
 pub(super) fn value_bounds(value: f64) -> [f64; 2] {
     [VALUE_SHARE * value, 1.0 - VALUE_SHARE * (1.0 - value)]
@@ -77,7 +77,10 @@ pub(super) fn bounds(family: Family, model: &Model) -> Bounds {
     let fixed = [0.0, 0.0];
     let [u, v] = match (family, model) {
         (Family::Pair(_), Model::Dyes(dyes)) if dyes.curves().len() > 1 => [fraction, fixed],
-        (Family::Bells, _) => BELL_RANGES_NM.map(|range| range.map(crate::polish::in_units)),
+        (Family::Bells, _) => {
+            let ranges_nm = [AnalyticModel::EMISSION_PEAKS_NM, AnalyticModel::STOKES_SHIFTS_NM];
+            ranges_nm.map(|range| range.map(|nm| nm / UNIT_NM))
+        }
         _ => [fixed, fixed],
     };
     let level = [-LEVEL_BOUND, LEVEL_BOUND];
@@ -103,7 +106,7 @@ impl Polisher<'_> {
 
     /// The reflectance with these values at the chart wavelengths.
     #[inline(always)]
-    pub(super) fn shape(&self, values: &Vector) -> Shape {
+    pub(super) fn shape(&self, values: &Vector) -> ValueShape {
         let (mut at, mut scale) = ([0.0; 3], [0.0; 3]);
         for i in 0..3 {
             let r = values[i];
@@ -111,7 +114,7 @@ impl Polisher<'_> {
             at[i] = (r - 0.5) * inverse;
             scale[i] = 0.25 * inverse * inverse * inverse;
         }
-        Shape { parabola: self.sums.parabola(at), scale }
+        ValueShape { parabola: self.sums.parabola(at), scale }
     }
 
     /// The material with these unknowns.
@@ -121,14 +124,14 @@ impl Polisher<'_> {
         Candidate { x, shape, steepness: self.steepness(&shape.parabola) }
     }
 
-    /// What a candidate shows, and how that changes with the unknowns.
+    /// The color of a candidate, and its derivatives.
     pub(super) fn point_of_values(&self, family: Family, candidate: &Candidate) -> Point {
         let x = candidate.x;
-        let Shape { parabola, scale } = &candidate.shape;
+        let ValueShape { parabola, scale } = &candidate.shape;
         let shaded = self.shade(family, 0.0, parabola, &[x[3], x[4], x[5]]);
         let mut by = [[0.0; 3]; UNKNOWNS];
         for i in 0..3 {
-            let chart = self.sums.chart(i);
+            let chart = &self.sums.chart[i];
             for k in 0..3 {
                 let mut sum = 0.0;
                 for m in 0..3 {
@@ -141,13 +144,13 @@ impl Polisher<'_> {
         Point { x, color: shaded.color, by }
     }
 
-    /// The color alone of a candidate.
+    /// The color of a candidate without derivatives.
     pub(super) fn color_of_values(&self, family: Family, candidate: &Candidate) -> Vector {
         let [.., c, u, v] = candidate.x;
         let parabola = &candidate.shape.parabola;
         let (mut color, emitted) = match (family, self.cube.model()) {
             (Family::Pair(first), Model::Dyes(dyes)) => {
-                let absorbers = [self.sums.dye(first), self.sums.dye(dyes.partner(first))];
+                let absorbers = [&self.sums.dyes[first], &self.sums.dyes[dyes.partner(first)]];
                 let shares = [c * (1.0 - u), c * u];
                 let color = self.sums.color(parabola, absorbers, shares);
                 (in_double(color), self.emissions[first].at(u).0)
@@ -160,7 +163,7 @@ impl Polisher<'_> {
                 (in_double(color), emitted.color)
             }
             _ => {
-                let clear = self.sums.clear();
+                let clear = &self.sums.clear;
                 (in_double(self.sums.color(parabola, [clear, clear], [0.0; 2])), [0.0; 3])
             }
         };
@@ -194,7 +197,7 @@ impl Polisher<'_> {
         Point { x, color: shaded.color, by: [by_edge, by_level, by_slope, by_c, by_u, by_v] }
     }
 
-    /// The unknowns of a material in the chart of edges, as near as bounds let it.
+    /// The unknowns of a material in the chart of edges, moved into the bounds.
     pub(super) fn unknowns(&self, edge: Edge, glow: &Glow, bounds: &Bounds) -> Unknowns {
         let slope = edge.slope_per_nm / self.slope_limit_per_nm;
         let [c, u, v] = glow.numbers;
@@ -210,8 +213,8 @@ impl Polisher<'_> {
         edge_of([*e, *level, slope * self.slope_limit_per_nm], 1.0)
     }
 
-    /// Where the shortest step in the chart of values leads that takes away the residual and what
-    /// the slope is above its limit.
+    /// The unknowns after the shortest step in the chart of values that removes the residual and brings
+    /// the slope to its limit.
     pub(super) fn step_along_limit(
         &self,
         here: &Point,
@@ -220,7 +223,7 @@ impl Polisher<'_> {
         bounds: &Bounds,
         damping: f64,
     ) -> Unknowns {
-        let Shape { parabola, scale } = &candidate.shape;
+        let ValueShape { parabola, scale } = &candidate.shape;
         let (steep, by_parabola) = candidate.steepness.derived(parabola, self.slope_limit_per_nm);
         let ([r0, r1, r2], by_color) = here.measured(measure);
         let residual = [r0, r1, r2, STEEPNESS_WEIGHT * (steep - STEEPNESS_GOAL)];
@@ -230,7 +233,7 @@ impl Polisher<'_> {
             by[v] = [l, a, b, 0.0];
         }
         for i in 0..3 {
-            by[i][3] = STEEPNESS_WEIGHT * scale[i] * dot(self.sums.chart(i), &by_parabola);
+            by[i][3] = STEEPNESS_WEIGHT * scale[i] * dot(&self.sums.chart[i], &by_parabola);
         }
         shortest_step(&here.x, &residual, &by, bounds, damping)
     }
@@ -240,7 +243,7 @@ impl Polisher<'_> {
         let &[c, u, v] = glow;
         match (family, self.cube.model()) {
             (Family::Pair(first), Model::Dyes(dyes)) => {
-                let absorbers = [self.sums.dye(first), self.sums.dye(dyes.partner(first))];
+                let absorbers = [&self.sums.dyes[first], &self.sums.dyes[dyes.partner(first)]];
                 let shares = [c * (1.0 - u), c * u];
                 let shown = self.sums.reflect(center, parabola, absorbers, shares);
                 let (emitted, by_weight) = self.emissions[first].at(u);
@@ -271,7 +274,7 @@ impl Polisher<'_> {
                 shaded
             }
             _ => {
-                let clear = self.sums.clear();
+                let clear = &self.sums.clear;
                 Shaded::of(&self.sums.reflect(center, parabola, [clear, clear], [0.0; 2]))
             }
         }
@@ -283,7 +286,7 @@ fn in_double([x, y, z]: [f32; 3]) -> Vector {
     [f64::from(x), f64::from(y), f64::from(z)]
 }
 
-impl Shape {
+impl ValueShape {
     /// The reflectance by its steepest point.
     #[inline(always)]
     pub(super) fn edge(&self) -> Edge {
@@ -292,14 +295,15 @@ impl Shape {
 }
 
 impl Steepness {
-    /// Relative to the limit, and its derivatives by the parabola's coefficients: where the slope
-    /// is greatest it does not change with wavelength, so only the coefficients move it.
+    /// The greatest slope relative to the limit, and its derivatives with respect to the parabola's
+    /// coefficients. At its maximum the slope is stationary in wavelength, so that the shift of the
+    /// maximum does not contribute.
     #[inline(always)]
     fn derived(self, [q0, q1, _]: &Parabola, slope_limit_per_nm: f64) -> (f64, [f64; 3]) {
         let steep = self.squared.sqrt();
         let p = self.level;
         let g = 1.0 + p * p;
-        // The slope is 0.5·x'(t)·g^(-3/2), and t the nearer of the two places with its size.
+        // The slope is 0.5·x'(t)·g^(-3/2), and t the nearer of the two points where it is greatest.
         let by_linear = 0.5 / (g * g.sqrt() * slope_limit_per_nm * UNIT_NM);
         let x_slope = (steep / by_linear).copysign(*q1);
         let sum = q1 + x_slope;
@@ -340,7 +344,7 @@ mod tests {
     }
 
     #[test]
-    fn the_steepness_and_its_derivatives_are_those_of_the_fits() {
+    fn the_steepness_and_its_derivatives_equal_those_of_fits() {
         // Rounding only, of roots of numbers up to 1000.
         const ROUNDING: f64 = 1e-7;
         let cube = black();
@@ -359,7 +363,7 @@ mod tests {
     }
 
     #[test]
-    fn the_parabola_moves_with_the_values_as_told() {
+    fn derivatives_of_the_parabola_match_differences() {
         // Central differences, whose error grows with the cube of the step.
         const STEP: f64 = 1e-6;
         let cube = black();
@@ -375,7 +379,7 @@ mod tests {
                 let (low, high) = (moved(-STEP), moved(STEP));
                 for m in 0..3 {
                     let quotient = (high[m] - low[m]) / (2.0 * STEP);
-                    let told = shape.scale[i] * polisher.sums.chart(i)[m];
+                    let told = shape.scale[i] * polisher.sums.chart[i][m];
                     assert!((told - quotient).abs() < 1e-4 * (1.0 + quotient.abs()), "{values:?}");
                 }
             }

@@ -1,13 +1,12 @@
-//! What polishing needs of a cube's nodes.
+//! The nodes of a cube, prepared for polishing.
 
 use upglow::{Cube, Edge, Fluorescence, ModelOnGrid};
 use upglow_color::rounding::to_single;
 
-use crate::polish::in_units;
 use crate::polish::sums::CHART_NM;
-use crate::problem::parabola::{edge_of, scaled};
+use crate::problem::parabola::{UNIT_NM, edge_of, scaled};
 
-/// What polishing needs of a node, one cache line.
+/// A node, prepared for polishing; one cache line.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(super) struct Corner {
@@ -15,7 +14,7 @@ pub(super) struct Corner {
     pub(super) values: [f32; 3],
     /// Edge (t), level, slope (1/nm).
     pub(super) edge: [f32; 3],
-    /// Dyes: the place in the ring, first + weight. Bells: emission peak, Stokes shift, 100 nm.
+    /// Dyes: the position in the ring, first + weight. Bells: emission peak, Stokes shift, 100 nm.
     pub(super) hue: [f32; 2],
     pub(super) concentration: f32,
     pub(super) xyz: [f32; 3],
@@ -36,7 +35,7 @@ impl Corner {
                 ([first as f64 + weight, 0.0], concentration)
             }
             Fluorescence::Analytic { emission_peak_nm, stokes_shift_nm, concentration } => {
-                ([emission_peak_nm, stokes_shift_nm].map(in_units), concentration)
+                ([emission_peak_nm, stokes_shift_nm].map(|nm| nm / UNIT_NM), concentration)
             }
         };
         Self {
@@ -55,10 +54,10 @@ impl Corner {
     }
 }
 
-/// Whether all corners that take part have a property.
+/// Whether all corners with a weight above 0 have a property.
 #[inline(always)]
 pub(super) fn all(corners: &Corners<'_>, holds: impl Fn(&Corner) -> bool) -> bool {
-    // All are asked, as none foretells the next.
+    // Without an early exit, as branches are hard to predict here.
     let mut all = true;
     for (weight, corner) in corners {
         all &= (*weight == 0.0) | holds(corner);
@@ -66,7 +65,7 @@ pub(super) fn all(corners: &Corners<'_>, holds: impl Fn(&Corner) -> bool) -> boo
     all
 }
 
-/// The mean of one number of the corners.
+/// The weighted mean of one number of the corners.
 #[inline(always)]
 pub(super) fn mean(corners: &Corners<'_>, of: impl Fn(&Corner) -> f32) -> f64 {
     corners.iter().map(|(weight, corner)| weight * f64::from(of(corner))).sum()

@@ -1,5 +1,6 @@
-//! Steps from a start to a color, within bounds, changing as little as possible.
+//! Bounded steps of least length from a start to a color.
 
+use crate::fit::EXACT;
 use crate::problem::solver::solve_positive;
 
 /// Unknowns of a material: three of the reflectance, concentration, two of the fluorescence.
@@ -7,12 +8,12 @@ pub(super) const UNKNOWNS: usize = 6;
 
 /// A number for each unknown.
 pub(super) type Unknowns = [f64; UNKNOWNS];
-/// A color, or what is left of one.
+/// A color, or a residual.
 pub(super) type Vector = [f64; 3];
 /// Least and greatest value of each unknown.
 pub(super) type Bounds = [[f64; 2]; UNKNOWNS];
 
-/// A place, its color, and how that changes with the unknowns, `[unknown][X Y Z]`.
+/// Unknowns, their color, and its derivatives, `[unknown][X Y Z]`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Point {
     pub(super) x: Unknowns,
@@ -20,42 +21,35 @@ pub(super) struct Point {
     pub(super) by: [Vector; UNKNOWNS],
 }
 
-/// How far colors are from a goal: linear in the color.
+/// The distance of colors from a target, linear in the color.
 pub(super) trait Measure {
     /// Three numbers whose squares add up to the square of the distance.
     fn residual(&self, color: &Vector) -> Vector;
-    /// How they change with a change of the color.
+    /// Their change for a change of the color.
     fn change(&self, by: &Vector) -> Vector;
 }
 
-/// When to stop.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Limits {
-    /// Good enough, in units of the metric.
-    pub(super) norm_reached: f64,
-    /// Evaluations after the first.
-    pub(super) steps: usize,
-    /// A step that gains less than this share is the last.
-    pub(super) least_gain: f64,
-}
-
-/// First damping, relative to the greatest diagonal entry. Larger crawls, smaller overshoots where
-/// the color cannot be reached.
+/// Descents stop at this distance.
+const NORM_REACHED: f64 = 0.2 * EXACT;
+/// Descents and rounds of descents that gain less than this share are the last.
+pub(super) const LEAST_GAIN: f64 = 0.05;
+/// First damping, relative to the greatest diagonal entry. Larger converges slowly; smaller overshoots
+/// if the color cannot be reached.
 const DAMPING: f64 = 1e-4;
 /// Damping after a step that failed.
 const FAILED_DAMPING: f64 = 1e-3;
-/// Damping never falls below this, so that double precision solves what is left.
+/// Damping never falls below this, so that the system stays solvable in double precision.
 pub(super) const LEAST_DAMPING: f64 = 1e-8;
 
 impl Point {
-    /// The distance from the goal.
+    /// The distance from the target.
     #[inline(always)]
     pub(super) fn norm(&self, measure: &impl Measure) -> f64 {
         let residual = measure.residual(&self.color);
         dot(&residual, &residual).sqrt()
     }
 
-    /// What is left to the goal, and its derivatives.
+    /// The residual, and its derivatives.
     #[inline(always)]
     pub(super) fn measured(&self, measure: &impl Measure) -> (Vector, [Vector; UNKNOWNS]) {
         let mut by = [[0.0; 3]; UNKNOWNS];
@@ -65,19 +59,19 @@ impl Point {
         (measure.residual(&self.color), by)
     }
 
-    /// The best point on the way down from `self`, by Levenberg and Marquardt's method.
+    /// The best point of a descent from `self` by the Levenberg–Marquardt method.
     pub(super) fn descend(
         self,
         measure: &impl Measure,
         bounds: &Bounds,
-        limits: Limits,
+        steps: usize,
         eval: impl Fn(Unknowns) -> Self,
     ) -> Self {
         let mut here = self;
         let mut damping = DAMPING;
-        for _ in 0..limits.steps {
+        for _ in 0..steps {
             let norm = here.norm(measure);
-            if norm <= limits.norm_reached {
+            if norm <= NORM_REACHED {
                 break;
             }
             let (residual, by) = here.measured(measure);
@@ -90,7 +84,7 @@ impl Point {
             if gain > 0.0 {
                 here = there;
                 damping = (damping * 0.1).max(LEAST_DAMPING);
-                if gain < limits.least_gain {
+                if gain < LEAST_GAIN {
                     break;
                 }
             } else {
@@ -101,10 +95,10 @@ impl Point {
     }
 }
 
-/// Where the shortest step leads that takes the residual away, as far as bounds and damping let it.
+/// The unknowns after the shortest step that removes the residual, as far as bounds and damping allow.
 ///
 /// With M = Σ jᵥjᵥᵀ over the unknowns that move, the step is −jᵥ·(M + μ)⁻¹r. An unknown that would
-/// cross a bound is set on it, and the others make up for what it leaves.
+/// cross a bound is set to it, and the others compensate.
 #[inline(always)]
 pub(super) fn shortest_step<const M: usize>(
     x: &Unknowns,
@@ -114,7 +108,7 @@ pub(super) fn shortest_step<const M: usize>(
     damping: f64,
 ) -> Unknowns {
     let mut residual = *residual;
-    // What is set on a bound stays there, and has no derivatives any more.
+    // Unknowns that are set to a bound stay there, and have derivatives of 0.
     let (mut from, mut by) = (*x, *by);
     let (mut wanted, mut next) = (*x, *x);
     for _ in 0..UNKNOWNS {
@@ -161,10 +155,10 @@ fn damped_squares<const M: usize>(by: &[[f64; M]; UNKNOWNS], damping: f64) -> [[
     matrix
 }
 
-/// A number moved between its bounds; the lower one for what is no number.
+/// The value clamped to its bounds; the lower one for NaN.
 #[inline(always)]
 pub(super) fn within(value: f64, &[least, greatest]: &[f64; 2]) -> f64 {
-    // One instruction each, where `f64::max` also looks for what is no number.
+    // One instruction each; `f64::max` takes more, for NaN.
     let value = if value > least { value } else { least };
     if value < greatest { value } else { greatest }
 }
@@ -178,7 +172,7 @@ pub(super) fn dot<const M: usize>(a: &[f64; M], b: &[f64; M]) -> f64 {
     sum
 }
 
-/// Solves three equations, rows first; `None` where they have no one solution.
+/// Solves three linear equations, `m` in rows; `None` if they have no unique solution.
 #[inline(always)]
 pub(super) fn solve(m: &[Vector; 3], r: &Vector) -> Option<Vector> {
     let minors = [cross(&m[1], &m[2]), cross(&m[2], &m[0]), cross(&m[0], &m[1])];
@@ -210,13 +204,13 @@ mod tests {
     }
 
     #[test]
-    fn a_step_takes_the_residual_away_and_stays_within_bounds() {
+    fn a_step_removes_the_residual_and_stays_within_bounds() {
         let residual = [1.0, -2.0, 0.7];
         for bound in [10.0, 0.7, 0.6] {
             let bounds = [[-bound, bound]; UNKNOWNS];
             let x = shortest_step(&[0.0; UNKNOWNS], &residual, &BY, &bounds, LEAST_DAMPING);
             assert!(x.iter().all(|v| v.abs() <= bound), "{x:?}");
-            // The damping leaves its share of numbers near 1.
+            // The damping leaves a small residual.
             assert!(left(&x, residual).iter().all(|r| r.abs() < 1e-6), "{bound} {x:?}");
         }
     }

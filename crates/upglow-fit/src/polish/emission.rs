@@ -1,27 +1,27 @@
-//! What a pair of dyes emits, by the weight of the second.
+//! The emission of a pair of dyes as a function of the weight of the second.
 
 use upglow::{Accounting, DyeModel, Mixing, ModelOnGrid};
 
 use crate::polish::descent::Vector;
 
-/// What a pair of dyes emits at concentration 1: cubics over equal parts of the weight.
+/// The emission of a pair of dyes at concentration 1, as cubics over equal intervals of the weight.
 #[derive(Clone, Debug)]
 pub(super) struct Emission {
     parts: u16,
-    /// Colors, and their slopes by the part, at the ends of the parts.
+    /// Colors, and their derivatives per interval, at the ends of the intervals.
     knots: Vec<(Vector, Vector)>,
 }
 
-/// Into how many parts the weights go where photons are counted for both dyes together: each
-/// wavelength that the mean emission passes bends the emission a little. Colors then err by less
-/// than 1e-6; with 16 parts by 1e-5, which shows in the dark.
+/// Number of intervals for pooled dyes with photon accounting, where the emission has a kink at each
+/// wavelength that the mean emission passes. Colors err by less than 1e-6; with 16 intervals by 1e-5,
+/// which is visible in the dark.
 const PHOTON_PARTS: u16 = 256;
 
 impl Emission {
     pub(super) fn new(model: &ModelOnGrid, dyes: &DyeModel, first: usize) -> Self {
         let parts = match (dyes.options().accounting, dyes.options().mixing) {
             (Accounting::Photon, Mixing::Pooled) => PHOTON_PARTS,
-            // The product of up to three straight lines.
+            // A product of up to three linear functions, which a cubic reproduces.
             _ => 1,
         };
         let knot = |i: u16| {
@@ -31,12 +31,12 @@ impl Emission {
         Self { parts, knots: (0..=parts).map(knot).collect() }
     }
 
-    /// The color of the emission at a weight in 0..=1, and its slope by the weight.
+    /// The color of the emission at a weight in 0..=1, and its derivative with respect to the weight.
     #[inline(always)]
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "the weight is in 0..=1 and its fraction is meant to go"
+        reason = "the weight is in 0..=1 and its fraction is to be dropped"
     )]
     pub(super) fn at(&self, weight: f64) -> (Vector, Vector) {
         let parts = f64::from(self.parts);
@@ -63,8 +63,8 @@ mod tests {
     use upglow_color::{Contract, Grid};
 
     #[test]
-    fn it_is_what_the_model_emits() {
-        // The cubics' error, and of slopes near 1 what bends between two knots.
+    fn emissions_equal_those_of_the_model() {
+        // Errors of the cubics, and of their slopes near kinks.
         const COLOR: f64 = 1e-6;
         const SLOPE: f64 = 1e-3;
         let colorimetry = Contract::default().on(Grid::FIT);

@@ -1,19 +1,19 @@
-//! Colors that an image has shown before.
+//! Colors that occurred before in a batch.
 
-/// Where a color was seen last, for as many colors as stay at hand.
+/// Where colors occurred last, for a limited number of colors.
 ///
-/// A material depends on nothing but its color, so what is forgotten changes no result.
+/// A material depends only on its color, so forgotten colors do not change results.
 #[derive(Debug)]
 pub(super) struct Repeats {
-    /// Texels, by a few bits mixed from their colors.
+    /// Indices of texels, by a hash of their colors.
     seen: Vec<usize>,
     shift: u32,
 }
 
-/// Slots for colors. More leave the first-level cache of processors, fewer forget a color before
-/// the next row of a tile shows it again.
+/// Slots for colors. More exceed the first-level cache of processors; fewer forget a color before it
+/// occurs in the next row of a tile.
 const MOST_SLOTS: usize = 2048;
-/// Where no color has been seen.
+/// An empty slot.
 const NOTHING: usize = usize::MAX;
 /// Odd numbers near the golden section of 2⁶⁴ and the root of 2 times 2⁶³, whose products spread
 /// neighboring colors over all slots.
@@ -26,7 +26,7 @@ impl Repeats {
         Self { seen: vec![NOTHING; slots], shift: u64::BITS - slots.trailing_zeros() }
     }
 
-    /// An earlier texel with the very same color, if one is remembered; this one is from now on.
+    /// An earlier texel with the same bits, if one is remembered. Remembers this one.
     #[inline(always)]
     #[expect(clippy::cast_possible_truncation, reason = "a slot's number has eleven bits")]
     pub(super) fn earlier(&mut self, rgb: &[[f32; 3]], texel: usize) -> Option<usize> {
@@ -45,7 +45,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_the_very_same_color_is_a_repeat() {
+    fn only_a_color_with_the_same_bits_is_a_repeat() {
         let rgb = [[0.5; 3], [0.5, 0.5, 0.25], [0.5; 3], [0.0; 3], [-0.0, 0.0, 0.0], [0.5; 3]];
         let mut repeats = Repeats::new(1 << 20);
         let found: Vec<Option<usize>> = (0..6).map(|i| repeats.earlier(&rgb, i)).collect();
@@ -53,7 +53,7 @@ mod tests {
     }
 
     #[test]
-    fn any_number_of_texels_and_colors_is_taken() {
+    fn batches_may_have_any_size_and_colors_any_value() {
         for texels in [0_u16, 1, 2, 3, 5000] {
             let rgb: Vec<[f32; 3]> = (0..texels).map(|i| [f32::from(i), 0.0, f32::NAN]).collect();
             let mut repeats = Repeats::new(rgb.len());

@@ -1,4 +1,4 @@
-//! Where a texel's material starts: between the materials of its corners.
+//! The start of a texel's material: a mean of its corners' materials.
 
 use upglow::{Edge, Features, Model};
 
@@ -6,7 +6,7 @@ use crate::polish::corner::{Corner, Corners, all, mean};
 use crate::problem::LEVEL_BOUND;
 use crate::problem::parabola::{MIDDLE_NM, UNIT_NM, edge_of, feature_chart, scaled, sigmoid_of};
 
-/// Which curves fluoresce.
+/// What kind of fluorescence a material has.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Family {
     /// None.
@@ -17,24 +17,25 @@ pub(super) enum Family {
     Bells,
 }
 
-/// A fluorescence as the solver moves it: concentration, and the unknowns of its family.
+/// A fluorescence as unknowns: concentration, and those of its family.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Glow {
     pub(super) family: Family,
     pub(super) numbers: [f64; 3],
 }
 
-/// Widths beyond this, nm, are those of nearly straight reflectances: they have no useful mean.
+/// Reflectances with wider features, nm, are nearly flat or straight, and their features have no useful
+/// mean.
 const WIDEST_NM: f64 = 3000.0;
-/// How far from the heaviest corner's place in the ring the others may lie to take part in the
-/// mean: beyond a neighbor, the dyes between are those of neither.
+/// Corners count in the mean if they are this near in the ring to the heaviest corner: the dyes between
+/// more distant corners are those of neither.
 const RING_REACH: f64 = 1.0;
-/// The same for emission peaks and Stokes shifts, 100 nm. Larger lets the mean fall between two
-/// bells, smaller makes steps in places where one mean would do.
+/// The same for emission peaks and Stokes shifts, 100 nm. With larger values the mean falls between two
+/// bells; smaller ones make unnecessary steps.
 const BELL_REACH: [f64; 2] = [0.3, 0.4];
 
-/// The reflectance between the corners' edges: mean edges where all rise or all fall, mean features
-/// where all are peaks or all valleys, mean parabolas else.
+/// The mean reflectance of the corners: of edges if all rise or all fall, of features if all are peaks
+/// or all valleys, else of parabolas.
 pub(super) fn edge(corners: &Corners<'_>) -> Edge {
     if all(corners, |c| c.edge[2] > 0.0) || all(corners, |c| c.edge[2] < 0.0) {
         let [e, level, slope_per_nm] = [0, 1, 2].map(|i| mean(corners, |c| c.edge[i]));
@@ -62,7 +63,7 @@ fn parabolas(corners: &Corners<'_>) -> Edge {
     let mut sum = [0.0; 3];
     for (weight, corner) in corners.iter().filter(|(weight, _)| *weight > 0.0) {
         let mut edge = corner.edge();
-        // Black and white lie at infinity: they would be the mean of whatever they take part in.
+        // Black and white have huge levels, which would dominate the mean.
         edge.level = edge.level.clamp(-LEVEL_BOUND, LEVEL_BOUND);
         let [p, b, k] = edge.parabola();
         let (b, k, e) = (b * UNIT_NM, k * UNIT_NM * UNIT_NM, f64::from(corner.edge[0]));
@@ -72,7 +73,7 @@ fn parabolas(corners: &Corners<'_>) -> Edge {
     sigmoid_of(sum).to_edge(MIDDLE_NM)
 }
 
-/// The fluorescence between the corners'; passive only where all of them are.
+/// The mean fluorescence of the corners; passive only if all of them are.
 #[inline(always)]
 pub(super) fn glow(corners: &Corners<'_>, model: &Model) -> Glow {
     if all(corners, |c| c.concentration == 0.0) {
@@ -95,7 +96,7 @@ pub(super) fn glow_of(corner: &Corner, model: &Model) -> Glow {
     glow(&alone, model)
 }
 
-/// The mean of the fluorescences that are like that of `heaviest`.
+/// The mean of the fluorescences that are near that of `heaviest`.
 fn glow_around(
     heaviest: &Corner,
     concentration: f64,
@@ -133,12 +134,12 @@ fn glow_around(
     }
 }
 
-/// The pair of dyes and the weight at a place in a ring of this length; one of infinite length has
+/// The pair of dyes and the weight at a position in a ring of this length; a ring of infinite length has
 /// a single pair.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "the place is in the ring and its fraction is the weight"
+    reason = "the position is in the ring and its fraction is the weight"
 )]
 fn pair_at(place: f64, ring: f64) -> (usize, f64) {
     if ring.is_infinite() {

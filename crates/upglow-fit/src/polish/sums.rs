@@ -7,22 +7,22 @@ use upglow_color::rounding::to_single;
 
 use crate::problem::parabola::{Parabola, scaled};
 
-/// Samples of one curve at the wavelengths that the observer sees, padded to whole vectors.
+/// Samples of a curve at the visible wavelengths, padded to whole vectors.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 pub(super) struct SingleLanes([f32; LANES]);
 
 /// 360, 365 … 830 nm are 95 samples of the 5 nm grid.
 const LANES: usize = 96;
-/// How many sums run side by side. It is the same on every machine, and no product is fused with a
-/// sum, so the bits of a result are the same too.
+/// Partial sums per sum. The number is the same on every machine, and no product is fused with a sum,
+/// so results have the same bits everywhere.
 const WIDTH: usize = 8;
 
-/// Three wavelengths, nm, at which a reflectance is given by its values: where blue, green and red
-/// are seen most, so that colors are nearly linear in the values and each value has its own.
+/// The three wavelengths, nm, of the chart of values: where the observer is most sensitive to blue, green
+/// and red, so that colors are nearly linear in the values and nearly separate.
 pub(super) const CHART_NM: [f64; 3] = [455.0, 545.0, 610.0];
 
-/// An absorption, by itself and as the observer sees it.
+/// An absorption, and its product with the weights.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Absorber {
     curve: SingleLanes,
@@ -39,19 +39,19 @@ pub(super) struct SingleSums {
     /// `[chart wavelength][X Y Z]`.
     chart_weights: [[SingleLanes; 3]; 3],
     /// Those parabolas, `[chart wavelength][coefficient]`.
-    chart: [Parabola; 3],
+    pub(super) chart: [Parabola; 3],
     /// Dyes in ring order.
-    dyes: Vec<Absorber>,
-    clear: Absorber,
+    pub(super) dyes: Vec<Absorber>,
+    pub(super) clear: Absorber,
     bells: Option<Bells>,
 }
 
-/// What a reflectance shows.
+/// The color of a reflectance, and derivatives.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shown {
     pub(super) color: [f32; 3],
-    /// Derivatives of the color by the parabola's coefficients of 1, d, d², or by its values at the
-    /// chart wavelengths.
+    /// Derivatives of the color with respect to the parabola's coefficients of 1, d, d², or to its values
+    /// at the chart wavelengths.
     pub(super) by: [[f32; 3]; 3],
     /// ∫ w·absorption·r for two absorbers.
     pub(super) seen: [[f32; 3]; 2],
@@ -109,14 +109,6 @@ impl SingleSums {
         }
     }
 
-    pub(super) fn dye(&self, dye: usize) -> &Absorber {
-        &self.dyes[dye]
-    }
-
-    pub(super) fn clear(&self) -> &Absorber {
-        &self.clear
-    }
-
     /// The parabola that has these values at the chart wavelengths.
     #[inline(always)]
     pub(super) fn parabola(&self, [a, b, c]: [f64; 3]) -> Parabola {
@@ -128,12 +120,8 @@ impl SingleSums {
         parabola
     }
 
-    pub(super) fn chart(&self, i: usize) -> &Parabola {
-        &self.chart[i]
-    }
-
-    /// The color of the reflectance whose parabola has these values at the chart wavelengths, and
-    /// its derivatives by them.
+    /// The color of a reflectance, and its derivatives with respect to the parabola's values at the chart
+    /// wavelengths.
     pub(super) fn reflect_chart(&self, parabola: &Parabola) -> Shown {
         let parabola = single_parabola(parabola);
         dispatch!(self.simd_level, simd => simd.vectorize(
@@ -167,8 +155,8 @@ impl SingleSums {
         Shown { color: totals(color), by: by_totals(by), seen: [[0.0; 3]; 2] }
     }
 
-    /// The color of a reflectance behind two absorbers with their shares, in half the time that
-    /// its derivatives take.
+    /// The color of a reflectance behind two absorbers with these concentrations, in half the time that
+    /// derivatives take.
     pub(super) fn color(
         &self,
         parabola: &Parabola,
@@ -210,7 +198,7 @@ impl SingleSums {
     }
 
     /// The color of the reflectance with the parabola `p + d·(b + d·k)`, d = t − `center`, behind
-    /// two absorbers with their shares; derivatives by p, b and k.
+    /// two absorbers with these concentrations, and its derivatives with respect to p, b and k.
     pub(super) fn reflect(
         &self,
         center: f64,
@@ -278,7 +266,7 @@ impl SingleSums {
         Shown { color, by: by_totals(by), seen }
     }
 
-    /// The absorption of a bell around `center_nm`, and its derivative by the center, 1/nm.
+    /// The absorption of a bell around `center_nm`, and its derivative with respect to the center, 1/nm.
     pub(super) fn bell_absorbers(&self, center_nm: f64) -> [Absorber; 2] {
         let Some(bells) = &self.bells else { return [self.clear; 2] };
         let (center_nm, step_nm) = (to_single(center_nm), bells.absorption_step_nm);
@@ -320,7 +308,7 @@ pub(super) struct Bells {
 
 impl Bells {
     fn new(bells: &AnalyticModel, model: &ModelOnGrid, first: usize) -> Self {
-        // A bell of unit area and knot step h has a peak of 2/(3h); steps are as widths.
+        // A bell of unit area and knot step h has a peak of 2/(3h); steps are proportional to widths.
         let emission_step_nm = 2.0 / 3.0 / bells.emission(550.0, 550.0).0;
         let share = bells.absorption_fwhm_nm() / bells.emission_fwhm_nm();
         let nm = model.wavelengths_nm();
@@ -352,7 +340,7 @@ fn lagrange(i: usize) -> Parabola {
     [a * b * scale, -(a + b) * scale, scale]
 }
 
-/// The sums of three vectors' lanes, in an order that is the same on every machine.
+/// The sums of the lanes of three vectors, in an order that is the same on every machine.
 #[inline(always)]
 fn totals<S: Simd>(vectors: [f32x8<S>; 3]) -> [f32; 3] {
     let mut totals = [0.0; 3];
@@ -399,12 +387,12 @@ mod tests {
     }
 
     #[test]
-    fn the_bits_are_the_same_with_and_without_wide_vectors() {
+    fn results_have_the_same_bits_with_and_without_wide_vectors() {
         let sums = SingleSums::new(&dyes());
         let plain = SingleSums { simd_level: Level::baseline(), ..sums.clone() };
         for (numbers, shares) in MATERIALS {
             let colors = [&sums, &plain].map(|sums| {
-                let absorbers = [sums.dye(2), sums.dye(3)];
+                let absorbers = [&sums.dyes[2], &sums.dyes[3]];
                 let shown = sums.reflect(numbers[0], &parabola(numbers), absorbers, shares);
                 let chart = sums.reflect_chart(&parabola(numbers));
                 let color = sums.color(&parabola(numbers), absorbers, shares);
@@ -420,7 +408,7 @@ mod tests {
         const SINGLE: f32 = 1e-6;
         let sums = SingleSums::new(&dyes());
         for (numbers, shares) in MATERIALS {
-            let (parabola, absorbers) = (parabola(numbers), [sums.dye(2), sums.dye(3)]);
+            let (parabola, absorbers) = (parabola(numbers), [&sums.dyes[2], &sums.dyes[3]]);
             let color = sums.color(&parabola, absorbers, shares);
             let shown = sums.reflect(0.0, &parabola, absorbers, shares);
             for k in 0..3 {
@@ -438,7 +426,7 @@ mod tests {
         for (numbers, [a, b]) in MATERIALS {
             let [e, level, slope_per_nm] = numbers;
             let edge = Edge { edge_nm: 565.0 + 100.0 * e, level, slope_per_nm };
-            let shown = sums.reflect(e, &parabola(numbers), [sums.dye(2), sums.dye(3)], [a, b]);
+            let shown = sums.reflect(e, &parabola(numbers), [&sums.dyes[2], &sums.dyes[3]], [a, b]);
             let expected = match a + b {
                 0.0 => model.color(Material::passive(edge.to_sigmoid())).0,
                 c => {

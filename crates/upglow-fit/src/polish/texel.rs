@@ -1,47 +1,47 @@
-//! The way to the material of one texel.
+//! Finds the material of one texel.
 
 use upglow::{Edge, Fluorescence, Node, Sigmoid};
 use upglow_color::{Goal, LinearRgb, Matrix3, Metric, Xyz};
 
 use crate::fit::EXACT;
 use crate::polish::Polisher;
-use crate::polish::candidate::{Candidate, STEEPNESS_WEIGHT, Shape, bounds, inside, value_bounds};
+use crate::polish::candidate::{
+    Candidate, STEEPNESS_WEIGHT, ValueShape, bounds, inside, value_bounds,
+};
 use crate::polish::corner::{Corners, all, mean};
 use crate::polish::descent::{
-    Bounds, LEAST_DAMPING, Limits, Measure, Point, Unknowns, Vector, dot, shortest_step, solve,
+    Bounds, LEAST_DAMPING, LEAST_GAIN, Measure, Point, Unknowns, Vector, dot, shortest_step, solve,
     within,
 };
 use crate::polish::start::{self, Family, Glow};
 use crate::polish::sums::Shown;
 use crate::problem::parabola::MIDDLE_NM;
 
-/// CIEDE2000 is at most this many times a small distance in Lab: 1.5 near gray, where it stretches
-/// a*, and little more in the blue, where it turns. A test looks for more.
+/// CIEDE2000 is at most this many times a small distance in Lab: 1.5 near gray, where it stretches a*,
+/// and slightly more in the blue, where it rotates. A test looks for more.
 const DE2000_PER_LAB: f64 = 1.8;
-/// A distance in Lab, linear around the color, at which a material shows it: CIEDE2000 is then
-/// below three quarters of [`EXACT`], and what is left is for the rounding of what is stored.
+/// A material at this distance in linearized Lab matches: CIEDE2000 is below three quarters of
+/// [`EXACT`], and the rest is for the rounding of stored numbers.
 const NEAR: f64 = 0.75 * EXACT / DE2000_PER_LAB;
-/// Evaluations of reflectance alone: two are enough nearly always.
+/// Most evaluations for a reflectance; two are nearly always enough.
 const PASSIVE_STEPS: usize = 6;
-/// Evaluations with fluorescence: three in the mean.
+/// Most evaluations with fluorescence; the mean is three.
 const GLOWING_STEPS: usize = 7;
-/// From a color this near, in Lab, the derivatives are good for the rest of the way: each further
-/// step then leaves some hundredth. Larger takes more steps, smaller more derivatives.
+/// From a color this near, in Lab, the derivatives are not computed again: each further step leaves a
+/// few hundredths of the residual. Larger takes more steps; smaller takes more derivatives.
 const DERIVATIVES_HOLD: f64 = 1.5;
-/// How many steps in the chart of values may lead further away before it is given up. With none, a
-/// sixth more texels go the long way.
+/// How many steps in the chart of values may increase the distance. With none, a sixth more texels need
+/// the chart of edges.
 const MOST_SETBACKS: usize = 1;
-/// Rounds in which CIEDE2000 is taken as linear around the color at hand.
+/// Rounds, each with CIEDE2000 linearized around the current color.
 const ROUNDS: usize = 4;
-/// Evaluations in each round. More of them lead along directions that are no longer right.
+/// Evaluations in each round. With more, the linearization is out of date.
 const ROUND_STEPS: usize = 2;
-/// A round that gains less than this share is the last.
-const LEAST_GAIN: f64 = 0.05;
 /// How much further from the color than the blend a material may be before other starts are tried,
-/// ΔE00: half of what an eye can tell. Smaller tries them in vain, as blends show more than single
-/// materials do.
+/// ΔE00: half of a visible difference. Smaller tries them in vain, as blends reach more colors than
+/// single materials.
 const WORSE_THAN_BLEND: f64 = 0.5;
-/// Materials that miss by this much more than the blend are worth all starts there are, ΔE00.
+/// If a material misses by this much more than the blend, ΔE00, all starts are tried.
 const PLAIN_TO_SEE: f64 = 2.0;
 
 /// One texel.
@@ -53,7 +53,7 @@ pub(super) struct Texel<'p, 'c, 'n> {
     corners: &'p Corners<'n>,
 }
 
-/// Differences in Lab, as linear around a color.
+/// Lab, linearized around a color.
 #[derive(Clone, Copy, Debug)]
 struct LabAround {
     target: Vector,
@@ -97,14 +97,14 @@ impl Measure for LabAround {
     }
 }
 
-/// The slope of Lab's compressed response, to one part in a thousand, which is plenty to weigh
-/// distances by: 1/3·v^(−2/3), and a constant below (6/29)³.
+/// The slope of Lab's compressed response, 1/3·v^(−2/3), and constant below (6/29)³. One part in a
+/// thousand is accurate enough for distances.
 #[inline(always)]
 fn response_slope(v: f64) -> f64 {
     const KNEE: f64 = 216.0 / 24389.0;
     const THIRD: f64 = 1.0 / 3.0;
     let v = if v > KNEE { v } else { KNEE };
-    // An inverse cube root from a third of the exponent, and two of Newton's steps.
+    // An inverse cube root from a third of the exponent, and two Newton steps.
     let mut root = f64::from_bits(0x553e_f0ff_289d_d796 - v.to_bits() / 3);
     for _ in 0..2 {
         root *= THIRD * (4.0 - v * root * root * root);
@@ -112,7 +112,7 @@ fn response_slope(v: f64) -> f64 {
     THIRD * root * root
 }
 
-/// CIEDE2000 as it is around a color.
+/// CIEDE2000, linearized around a color.
 #[derive(Clone, Copy, Debug)]
 struct Linear {
     center: Vector,
@@ -157,7 +157,7 @@ impl<'p, 'c, 'n> Texel<'p, 'c, 'n> {
         Self { polisher, rgb, target, lab, corners }
     }
 
-    /// The material of the texel, and its distance.
+    /// The material of the texel, with its distance.
     pub(super) fn polish(&self) -> Node {
         if let Some(gray) = self.gray() {
             return gray;
@@ -172,7 +172,7 @@ impl<'p, 'c, 'n> Texel<'p, 'c, 'n> {
         direct.unwrap_or_else(|| self.nearest(&glow, is_hopeless))
     }
 
-    /// The material between the corners', one step nearer to the color; its distance is not known.
+    /// The mean of the corners' materials after one step to the color; its distance is not known.
     pub(super) fn interpolate(&self) -> Node {
         if let Some(gray) = self.gray() {
             return gray;
@@ -200,26 +200,26 @@ impl<'p, 'c, 'n> Texel<'p, 'c, 'n> {
         self.within_limit(candidate.shape.edge(), fluorescence)
     }
 
-    /// A reflectance made as soft as the limit demands.
+    /// A material with its slope reduced to the limit.
     fn within_limit(&self, edge: Edge, fluorescence: Fluorescence) -> Node {
         let limit = self.polisher.slope_limit_per_nm;
         let slope_per_nm = edge.slope_per_nm.clamp(-limit, limit);
         Node::new(Edge { slope_per_nm, ..edge }, fluorescence, f64::NAN)
     }
 
-    /// A flat reflectance where the color is a gray.
+    /// A flat reflectance if the color is a gray.
     fn gray(&self) -> Option<Node> {
         let [r, g, b] = self.rgb.0;
         (self.polisher.grays_are_flat && r == g && g == b)
             .then(|| Node::new(Sigmoid::flat(r).to_edge(MIDDLE_NM), Fluorescence::None, 0.0))
     }
 
-    /// Whether no corner shows its color.
+    /// Whether no corner matches its color.
     fn is_hopeless(&self) -> bool {
         all(self.corners, |c| f64::from(c.de2000) > EXACT)
     }
 
-    /// Reflectance alone from the mean of the corners, if that needs no bounds.
+    /// A reflectance that matches, found from the mean of the corners without bounds.
     fn passive(&self) -> Option<Node> {
         let sums = &self.polisher.sums;
         let mut values = inside(self.mean_values());
@@ -240,9 +240,9 @@ impl<'p, 'c, 'n> Texel<'p, 'c, 'n> {
         None
     }
 
-    /// Newton's step from `values`.
+    /// A Newton step from `values`.
     #[inline(always)]
-    fn passive_step(&self, values: &Vector, shape: &Shape, shown: &Shown) -> Option<Vector> {
+    fn passive_step(&self, values: &Vector, shape: &ValueShape, shown: &Shown) -> Option<Vector> {
         let mut rows = [[0.0; 3]; 3];
         let mut residual = [0.0; 3];
         for k in 0..3 {
@@ -259,7 +259,7 @@ impl<'p, 'c, 'n> Texel<'p, 'c, 'n> {
         Some(next)
     }
 
-    /// Reflectance and fluorescence from the mean of the corners, in the chart of values.
+    /// A fluorescent material that matches, found from the mean of the corners in the chart of values.
     fn glowing(&self, glow: &Glow) -> Option<Node> {
         let polisher = self.polisher;
         let family = glow.family;
@@ -272,7 +272,9 @@ impl<'p, 'c, 'n> Texel<'p, 'c, 'n> {
         for _ in 0..GLOWING_STEPS {
             let steep = candidate.steepness.squared;
             if norm <= NEAR && steep <= 1.0 {
-                return Some(glowing_node(family, &candidate, norm));
+                let [.., c, u, v] = candidate.x;
+                let fluorescence = Glow { family, numbers: [c, u, v] }.fluorescence();
+                return Some(node(candidate.shape.edge(), fluorescence, norm));
             }
             let next = self.glowing_step(&here, &candidate, bounds);
             let there = if norm <= DERIVATIVES_HOLD {
@@ -293,7 +295,7 @@ impl<'p, 'c, 'n> Texel<'p, 'c, 'n> {
         None
     }
 
-    /// Where a step in the chart of values leads; `bounds` are those of the fluorescence.
+    /// The candidate after a step in the chart of values; `bounds` are those of the fluorescence.
     #[inline(always)]
     fn glowing_step(&self, here: &Point, candidate: &Candidate, mut bounds: Bounds) -> Candidate {
         for i in 0..3 {
@@ -317,14 +319,14 @@ impl<'p, 'c, 'n> Texel<'p, 'c, 'n> {
         ))
     }
 
-    /// The nearest material that the starts lead to, in the chart of edges.
+    /// The nearest material found from several starts, in the chart of edges.
     fn nearest(&self, glow: &Glow, is_hopeless: bool) -> Node {
         let colorimetry = self.polisher.fitter.model().colorimetry();
         let goal = Metric::De2000.goal(colorimetry, Xyz(self.target));
         let mut best = self.approach(&goal, start::edge(self.corners), glow);
         let blend = [0, 1, 2].map(|k| mean(self.corners, |c| c.xyz[k]));
         let blended = goal.distance(Xyz(blend));
-        // Where the blend shows the color a material should, and the blend is as near as most get.
+        // If the blend matches, a material should; else few get nearer than the blend.
         let good = if blended <= EXACT { EXACT } else { blended + WORSE_THAN_BLEND };
         let is_good = |found: &Found| found.de2000 <= good;
         if is_good(&best) {
@@ -356,7 +358,7 @@ impl<'p, 'c, 'n> Texel<'p, 'c, 'n> {
         best.node
     }
 
-    /// Where one start leads.
+    /// The material found from one start.
     fn approach(&self, goal: &Goal, edge: Edge, glow: &Glow) -> Found {
         let polisher = self.polisher;
         let family = glow.family;
@@ -374,9 +376,8 @@ impl<'p, 'c, 'n> Texel<'p, 'c, 'n> {
             if round == ROUNDS || norm <= 0.5 * EXACT || gain < LEAST_GAIN {
                 break;
             }
-            let limits =
-                Limits { norm_reached: 0.2 * EXACT, steps: ROUND_STEPS, least_gain: LEAST_GAIN };
-            here = here.descend(&around, &bounds, limits, |x| polisher.point_of_edge(family, x));
+            let eval = |x| polisher.point_of_edge(family, x);
+            here = here.descend(&around, &bounds, ROUND_STEPS, eval);
         }
         let (x, de2000) = best.unwrap_or((x, f64::INFINITY));
         let [.., c, u, v] = x;
@@ -411,15 +412,9 @@ impl Found {
     }
 }
 
-/// What a candidate lacks in color and slope.
+/// The distance of a candidate, with a penalty for its slope.
 fn merit(norm: f64, steepness_squared: f64) -> f64 {
     norm + STEEPNESS_WEIGHT * (steepness_squared - 1.0).max(0.0)
-}
-
-fn glowing_node(family: Family, found: &Candidate, lab_distance: f64) -> Node {
-    let [.., c, u, v] = found.x;
-    let fluorescence = Glow { family, numbers: [c, u, v] }.fluorescence();
-    node(found.shape.edge(), fluorescence, lab_distance)
 }
 
 fn node(edge: Edge, fluorescence: Fluorescence, lab_distance: f64) -> Node {
@@ -451,10 +446,10 @@ mod tests {
     }
 
     #[test]
-    fn the_slope_of_the_response_is_that_of_lab() {
+    fn the_slope_of_the_response_equals_that_of_lab() {
         for i in 1..300 {
             let v = f64::from(i) * 0.01;
-            // Two of Newton's steps from a start within 4 %.
+            // Two Newton steps from a start within 4 %.
             assert!((response_slope(v) * 3.0 * v.cbrt().powi(2) - 1.0).abs() < 1e-4, "{v}");
         }
         assert_eq!(response_slope(-0.1), response_slope(0.0));

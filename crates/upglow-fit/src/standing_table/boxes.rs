@@ -1,12 +1,21 @@
-//! A lattice of boxes over a cube of RGB; corners and boxes are measured when they are asked for.
+//! A lattice of boxes over a cube of RGB; corners and boxes are examined when they are first needed.
 
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use upglow_color::rounding::{to_single, whole};
-use upglow_color::{ColorSolid, LinearRgb, Metric, StandingKind, Xyz};
+use upglow_color::{
+    ColorSolid, ColorSolids, Colorimetry, Contract, Grid, LinearRgb, Metric, StandingKind, Xyz,
+};
 
-use super::reach::{Reach, Side, parted};
+/// The colors that materials reach under one contract.
+#[derive(Debug)]
+pub(super) struct Reach {
+    pub(super) colorimetry: Colorimetry,
+    pub(super) solids: ColorSolids,
+    /// Half of white, deep inside both solids.
+    middle: Xyz,
+}
 
 #[derive(Debug)]
 pub(super) struct BoxLattice {
@@ -15,37 +24,35 @@ pub(super) struct BoxLattice {
     step: [f64; 3],
     /// Boxes along an axis.
     boxes: usize,
-    /// How often boxes were divided to come here.
+    /// How often boxes were divided to make this lattice.
     depth: u32,
-    /// `[blue][green][red]`.
-    corners: Vec<OnceLock<Corner>>,
+    /// Of both solids, `[blue][green][red]`.
+    corners: Vec<OnceLock<[Offset; 2]>>,
     /// `[blue][green][red]`.
     cells: Vec<OnceLock<Cell>>,
 }
 
-/// What is known of all colors in a box.
+/// What is known about the colors in a box.
 #[derive(Debug)]
 pub(super) enum Cell {
+    /// All are of this kind.
     Settled(StandingKind),
-    /// Some of its parts may be settled.
+    /// The kind of some of its parts may be known.
     Divided(Box<BoxLattice>),
-    /// Each color needs its own search, or the box is worth dividing further.
+    /// Each color needs a search, until the box is worth dividing.
     Mixed(Box<Mixed>),
 }
 
 /// A box that a surface passes through.
 #[derive(Debug, Default)]
 pub(super) struct Mixed {
-    asked: AtomicU32,
+    searches: AtomicU32,
     parts: OnceLock<BoxLattice>,
 }
 
-/// What is known at a corner of boxes.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Corner {
-    pub(super) reflectance: Offset,
-    pub(super) fluorescence: Offset,
-}
+/// Indices of the solids in the offsets of a corner.
+pub(super) const REFLECTANCE: usize = 0;
+pub(super) const FLUORESCENCE: usize = 1;
 
 /// How far a point is from a solid, and in what direction.
 #[derive(Clone, Copy, Debug)]
@@ -53,30 +60,29 @@ pub(super) struct Offset {
     /// 0 only well inside.
     distance: f32,
     de2000: f32,
-    /// Direction from the nearest point of the solid; of no length well inside.
+    /// Unit vector from the nearest point of the solid; 0 well inside.
     normal: [f32; 3],
 }
 
 const INSIDE: Offset = Offset { distance: 0.0, de2000: 0.0, normal: [0.0; 3] };
 
-/// Boxes along each axis of the first lattice. More cost a search each that most pictures never
-/// use; fewer leave more colors to be looked for in divided boxes.
+/// Boxes along each axis of the first lattice. More cost searches for boxes that most pictures do not
+/// use; fewer send more colors to divided boxes.
 const COARSE: usize = 32;
 
-/// Parts along each axis of a box that a surface passes through. More take memory for the whole
-/// surface (4 KB a box at 4, eightfold at 8); fewer take more steps.
+/// Parts along each axis of a divided box. More take memory along the whole surface (4 KB per box at 4,
+/// eight times that at 8); fewer take more steps.
 const PARTS: usize = 4;
 
-/// A box this deep, 1/128 of the lattice, is divided further only once it was asked for
-/// [`OFTEN`]: what is interpolated must not depend on what was asked before, and boxes so small
-/// are fine enough for that.
+/// A box this deep, 1/128 of the lattice, is divided only after [`OFTEN`] searches. Estimates do not use
+/// such divisions, as they must not depend on earlier colors, and boxes so small are fine enough.
 const FINE: u32 = 1;
 
-/// Searches in a box that cost as much as dividing it. Fewer divides boxes that are never asked
-/// for again; more searches for colors that fill half a picture.
+/// Searches that cost as much as dividing a box. Fewer divides boxes that are not needed again; more
+/// repeats searches for colors that fill half a picture.
 const OFTEN: u32 = 64;
 
-/// No box is divided deeper, to 1/8192: there is always a color on the surface itself.
+/// Boxes this deep, 1/8192, are not divided: some box always has the surface in it.
 const DEEPEST: u32 = 4;
 
 impl BoxLattice {
@@ -94,7 +100,7 @@ impl BoxLattice {
         Self { origin, step, boxes, depth, corners, cells }
     }
 
-    /// The box around `rgb`, which must be in the cube.
+    /// The box around `rgb`, which must be in the lattice.
     pub(super) fn cell(&self, rgb: LinearRgb, reach: &Reach) -> &Cell {
         let at = self.position(rgb).map(|(index, _)| index);
         let [r, g, b] = at;
@@ -102,10 +108,11 @@ impl BoxLattice {
         self.cells[index].get_or_init(|| self.settle(at, reach))
     }
 
-    /// Distance and ΔE00 between the corners of a box that [`BoxLattice::cell`] was asked for.
+    /// Distance and ΔE00 from a solid, interpolated between the corners of a box that
+    /// [`BoxLattice::cell`] has examined.
     ///
-    /// The distance from a convex body is a convex function, so the distance is not understated.
-    pub(super) fn interpolate(&self, rgb: LinearRgb, of: impl Fn(&Corner) -> Offset) -> [f64; 2] {
+    /// The distance from a convex set is a convex function, so it is never underestimated.
+    pub(super) fn interpolate(&self, rgb: LinearRgb, solid: usize) -> [f64; 2] {
         let position = self.position(rgb);
         let mut sum = [0.0; 2];
         for corner in 0..8 {
@@ -114,14 +121,14 @@ impl BoxLattice {
             let weight = share(0) * share(1) * share(2);
             let at = [0, 1, 2].map(|k| position[k].0 + side(k));
             let corner = self.corners[self.corner_index(at)].get();
-            let found = of(corner.expect("a box is settled by its corners"));
+            let found = corner.expect("a box is examined by its corners")[solid];
             sum[0] += weight * f64::from(found.distance);
             sum[1] += weight * f64::from(found.de2000);
         }
         sum
     }
 
-    /// For each axis the number of the box and the place in it, 0..=1.
+    /// For each axis the index of the box and the position in it, 0..=1.
     fn position(&self, rgb: LinearRgb) -> [(usize, f64); 3] {
         [0, 1, 2].map(|k| {
             let position = (rgb.0[k] - self.origin[k]) / self.step[k];
@@ -131,28 +138,31 @@ impl BoxLattice {
     }
 
     fn settle(&self, at: [usize; 3], reach: &Reach) -> Cell {
-        let corners = self.corners_of(at, reach);
-        let mut points = box_corners(at).map(|at| reach.colorimetry.xyz_from_rgb(self.rgb(at)));
-        let points = std::array::from_fn(|_| points.next().expect("a box has eight corners"));
-        let side = |solid: &ColorSolid, of: fn(&Corner) -> Offset| {
-            side_of(solid, &corners.map(|c| of(&c)), &points)
+        let at_corners: [_; 8] =
+            std::array::from_fn(|corner| [0, 1, 2].map(|k| at[k] + (corner >> k & 1)));
+        let corners = at_corners.map(|at| {
+            *self.corners[self.corner_index(at)].get_or_init(|| reach.offsets(self.rgb(at)))
+        });
+        let points = at_corners.map(|at| reach.colorimetry.xyz_from_rgb(self.rgb(at)));
+        let is_inside = |solid: usize| corners.iter().all(|corner| corner[solid].distance == 0.0);
+        let is_outside = |solid: usize| {
+            corners.iter().all(|corner| corner[solid].distance > 0.0)
+                && corners.iter().any(|corner| {
+                    let normal = corner[solid].normal.map(f64::from);
+                    is_separated(reach.solid(solid), normal, &points)
+                })
         };
-        let reflectance = side(&reach.solids.reflectance, |c| c.reflectance);
-        if reflectance == Side::Inside {
-            return Cell::Settled(StandingKind::Reflectance);
+        if is_inside(REFLECTANCE) {
+            Cell::Settled(StandingKind::Reflectance)
+        } else if is_outside(FLUORESCENCE) {
+            Cell::Settled(StandingKind::Unreachable)
+        } else if is_outside(REFLECTANCE) && is_inside(FLUORESCENCE) {
+            Cell::Settled(StandingKind::NeedsFluorescence)
+        } else if self.depth >= FINE {
+            Cell::Mixed(Box::default())
+        } else {
+            Cell::Divided(Box::new(self.parts(at)))
         }
-        match (reflectance, side(&reach.solids.fluorescence, |c| c.fluorescence)) {
-            (_, Side::Outside) => Cell::Settled(StandingKind::Unreachable),
-            (Side::Outside, Side::Inside) => Cell::Settled(StandingKind::NeedsFluorescence),
-            _ => self.divide(at),
-        }
-    }
-
-    fn divide(&self, at: [usize; 3]) -> Cell {
-        if self.depth >= FINE {
-            return Cell::Mixed(Box::default());
-        }
-        Cell::Divided(Box::new(self.parts(at)))
     }
 
     /// A lattice over one box.
@@ -163,25 +173,17 @@ impl BoxLattice {
 
     /// The kind of a color in a box that a surface passes through.
     pub(super) fn kind_in(&self, mixed: &Mixed, rgb: LinearRgb, reach: &Reach) -> StandingKind {
-        let asked = mixed.asked.fetch_add(1, Ordering::Relaxed);
-        if self.depth >= DEEPEST || (asked < OFTEN && mixed.parts.get().is_none()) {
+        let searches = mixed.searches.fetch_add(1, Ordering::Relaxed);
+        if self.depth >= DEEPEST || (searches < OFTEN && mixed.parts.get().is_none()) {
             return reach.kind(rgb);
         }
         let at = self.position(rgb).map(|(index, _)| index);
         let parts = mixed.parts.get_or_init(|| self.parts(at));
         match parts.cell(rgb, reach) {
             Cell::Settled(kind) => *kind,
-            Cell::Divided(_) => unreachable!("boxes this small are not divided at once"),
+            Cell::Divided(_) => unreachable!("boxes this small are only divided after searches"),
             Cell::Mixed(mixed) => parts.kind_in(mixed, rgb, reach),
         }
-    }
-
-    fn corners_of(&self, at: [usize; 3], reach: &Reach) -> [Corner; 8] {
-        let mut all = box_corners(at).map(|at| {
-            *self.corners[self.corner_index(at)]
-                .get_or_init(|| Corner::measure(self.rgb(at), reach))
-        });
-        std::array::from_fn(|_| all.next().expect("a box has eight corners"))
     }
 
     fn corner_index(&self, [r, g, b]: [usize; 3]) -> usize {
@@ -193,31 +195,50 @@ impl BoxLattice {
     }
 }
 
-impl Corner {
-    fn measure(rgb: LinearRgb, reach: &Reach) -> Self {
-        let color = reach.colorimetry.xyz_from_rgb(rgb);
-        let reflectance = Offset::measure(color, &reach.solids.reflectance, reach);
-        // Every reflectance is a fluorescent material that does not fluoresce.
-        let fluorescence = if reflectance.distance == 0.0 {
-            INSIDE
-        } else {
-            Offset::measure(color, &reach.solids.fluorescence, reach)
-        };
-        Self { reflectance, fluorescence }
-    }
-}
+/// A point is well inside if it still is when it moves away from the middle by this share. It must
+/// keep proofs far from the 1e-9 in XYZ at which a search stops, or results could differ from those of
+/// the search; larger only takes more searches, and overestimates distances by as much.
+const WELL_INSIDE: f64 = 1e-6;
 
-impl Offset {
-    fn measure(color: Xyz, solid: &ColorSolid, reach: &Reach) -> Self {
-        // No nearer than the color itself, for the way from the middle leads outward.
-        let further = reach.further_out(color);
-        let nearest = solid.nearest(further);
+/// A box is well outside if a plane separates it from the solid by this much in XYZ; for the same
+/// reason.
+const WELL_OUTSIDE: f64 = 1e-7;
+
+impl Reach {
+    pub(super) fn new(contract: &Contract) -> Self {
+        let colorimetry = contract.on(Grid::FIT);
+        let solids = ColorSolids::new(&colorimetry);
+        let middle = colorimetry.white() / 2.0;
+        Self { colorimetry, solids, middle }
+    }
+
+    /// The kind of material that `rgb` needs, by search.
+    pub(super) fn kind(&self, rgb: LinearRgb) -> StandingKind {
+        self.solids.kind(self.colorimetry.xyz_from_rgb(rgb))
+    }
+
+    fn solid(&self, index: usize) -> &ColorSolid {
+        [&self.solids.reflectance, &self.solids.fluorescence][index]
+    }
+
+    fn offsets(&self, rgb: LinearRgb) -> [Offset; 2] {
+        let color = self.colorimetry.xyz_from_rgb(rgb);
+        let reflectance = self.offset(color, REFLECTANCE);
+        // The solid of all materials contains that of reflectances.
+        let is_inside = reflectance.distance == 0.0;
+        [reflectance, if is_inside { INSIDE } else { self.offset(color, FLUORESCENCE) }]
+    }
+
+    fn offset(&self, color: Xyz, solid: usize) -> Offset {
+        // Further from the middle, so not nearer to the solid than the color itself.
+        let further = color + WELL_INSIDE * (color - self.middle);
+        let nearest = self.solid(solid).nearest(further);
         if nearest.distance == 0.0 {
             return INSIDE;
         }
-        let de2000 = Metric::De2000.distance(&reach.colorimetry, color, nearest.color);
+        let de2000 = Metric::De2000.distance(&self.colorimetry, color, nearest.color);
         let normal = (further - nearest.color) / nearest.distance;
-        Self {
+        Offset {
             distance: rounded_up(nearest.distance),
             de2000: rounded_up(de2000),
             normal: normal.0.map(rounded_up),
@@ -225,17 +246,11 @@ impl Offset {
     }
 }
 
-fn side_of(solid: &ColorSolid, corners: &[Offset; 8], points: &[Xyz; 8]) -> Side {
-    if corners.iter().all(|corner| corner.distance == 0.0) {
-        return Side::Inside;
-    }
-    let outside = corners.iter().all(|corner| corner.distance > 0.0)
-        && corners.iter().any(|corner| parted(solid, corner.normal.map(f64::from), points));
-    if outside { Side::Outside } else { Side::Unknown }
-}
-
-fn box_corners(at: [usize; 3]) -> impl Iterator<Item = [usize; 3]> {
-    (0..8_usize).map(move |corner| [0, 1, 2].map(|k| at[k] + (corner >> k & 1)))
+/// Whether a plane with this normal of about unit length separates all `points` from `solid`.
+fn is_separated(solid: &ColorSolid, normal: [f64; 3], points: &[Xyz]) -> bool {
+    let height = |p: Xyz| (0..3).map(|k| normal[k] * p.0[k]).sum::<f64>();
+    let surface = height(solid.support(normal));
+    points.iter().all(|&point| height(point) - surface > WELL_OUTSIDE)
 }
 
 /// Single precision, not below the value.

@@ -112,14 +112,14 @@ impl StridedSums {
 impl SampledDye {
     fn new(curves: &DyeCurves, fine: &StridedSums, fit: &StridedSums) -> Self {
         let emission = curves.emission.values();
-        let by = |sums: &StridedSums| {
+        let stimulus = |sums: &StridedSums| {
             // The sum over the grid instead of the exact area, so that a dye emits exactly its yield.
             let area = emission.iter().step_by(sums.stride).sum();
             sums.emission(emission, area)
         };
         Self {
             absorption: sampled(curves.absorption.values().iter().copied()),
-            stimulus: [fine, fit].map(by),
+            stimulus: [fine, fit].map(stimulus),
             quantum_yield: curves.quantum_yield,
             mean_emission_nm: curves.mean_emission_nm,
         }
@@ -240,14 +240,14 @@ impl<'m> Sampler<'m> {
     fn bell_lobe(&self, peak_nm: f64, stokes_shift_nm: f64, strength: f64) -> Option<Lobe> {
         let Model::Analytic(model) = self.model else { return None };
         let emission = self.wavelengths_nm.map(|nm| model.emission(peak_nm, nm).0);
-        let by = |sums: &StridedSums| sums.emission(&emission, 1.0 / sums.stride as f64);
+        let stimulus = |sums: &StridedSums| sums.emission(&emission, 1.0 / sums.stride as f64);
         Some(Lobe {
             absorber: Absorber::Bell { center_nm: peak_nm - stokes_shift_nm },
             strength,
             quantum_yield: model.quantum_yield(),
             accounting: model.accounting(),
             mean_emission_nm: peak_nm,
-            stimulus: [&self.fine, &self.fit].map(by),
+            stimulus: [&self.fine, &self.fit].map(stimulus),
         })
     }
 }
