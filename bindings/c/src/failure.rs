@@ -61,7 +61,7 @@ impl Failure {
     fn status(&self) -> UpglowStatus {
         match self {
             Self::Null { .. } => UpglowStatus::NullPointer,
-            Self::File(CubeFileError::Read { .. }) => UpglowStatus::File,
+            Self::File(CubeFileError::Io { .. }) => UpglowStatus::File,
             Self::File(_) | Self::Cube(_) => UpglowStatus::NotACube,
             Self::Lookup(_) => UpglowStatus::Outside,
             _ => UpglowStatus::InvalidArgument,

@@ -1,12 +1,13 @@
 //! Cubes: files, nodes, contract and model.
 
+use std::io::ErrorKind;
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
-use upglow::{AsideError, CubeFileError, DyeCurves, LookupTable, Model};
+use upglow::{CubeFileError, DyeCurves, LookupTable, Model};
 use upglow_fit::CubeSummary;
 
 use crate::contract::Contract;
@@ -43,6 +44,15 @@ impl Cube {
 /// Nodes, exact, within 1 and 2 ΔE00; mean, 95th percentile and greatest ΔE00; fluorescent nodes.
 type Summary = (usize, usize, usize, usize, f64, f64, f64, usize);
 
+fn file_error(error: CubeFileError) -> PyErr {
+    match error {
+        CubeFileError::Io { path, cause } if cause.kind() != ErrorKind::InvalidInput => {
+            os_error(&path, &cause)
+        }
+        error => value_error(error),
+    }
+}
+
 #[pymethods]
 impl Cube {
     /// What fluoresces, and by what rules.
@@ -53,10 +63,7 @@ impl Cube {
     /// Reads a cube's file.
     #[staticmethod]
     fn read(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        py.detach(|| upglow::Cube::read(path)).map(Self::of).map_err(|error| match error {
-            CubeFileError::Read { path, source } => os_error(&path, &source),
-            error => value_error(error),
-        })
+        py.detach(|| upglow::Cube::read(path)).map(Self::of).map_err(file_error)
     }
 
     /// Reads a cube from the content of its file.
@@ -67,12 +74,7 @@ impl Cube {
 
     /// Writes the cube's file, completely or not at all.
     fn write(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        py.detach(|| self.cube.write(path)).map_err(|error| match error {
-            CubeFileError::Write { path, source: AsideError::Io(source) } => {
-                os_error(&path, &source)
-            }
-            error => value_error(error),
-        })
+        py.detach(|| self.cube.write(path)).map_err(file_error)
     }
 
     /// The content of the cube's file.

@@ -69,7 +69,7 @@ fn measured((name, nm, absorption, emission, quantum_yield): Sampled) -> PyResul
 
 fn set_error(error: &DyeSetError) -> PyErr {
     match error {
-        DyeSetError::Read { path, source } => os_error(path, source),
+        DyeSetError::Read { path, cause } => os_error(path, cause),
         error => value_error(error),
     }
 }

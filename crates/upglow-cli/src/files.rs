@@ -12,8 +12,8 @@ const A_CUBE: &str = "a cube made by `upglow build`";
 /// Reads a cube.
 pub(crate) fn read_cube(path: &Path) -> Result<Cube, Failure> {
     Cube::read(path).map_err(|error| match error {
-        CubeFileError::Read { source, .. } => Failure::system(path, &source, A_CUBE),
-        CubeFileError::Content { source, .. } => Failure::file(path, source),
+        CubeFileError::Io { cause, .. } => Failure::system(path, &cause, A_CUBE),
+        CubeFileError::Content { cause, .. } => Failure::file(path, cause),
         error => Failure::file(path, error),
     })
 }

@@ -149,10 +149,10 @@ fn dye_set(text: &str) -> Result<DyeSet, Failure> {
 /// Names the invalid file in the folder.
 fn folder_failure(folder: &Path, error: DyeSetError) -> Failure {
     match error {
-        DyeSetError::Read { path, source } => {
-            Failure::system(&path, &source, "a folder of CSV files")
+        DyeSetError::Read { path, cause } => {
+            Failure::system(&path, &cause, "a folder of CSV files")
         }
-        DyeSetError::Csv { path, source } => Failure::file(&path, source),
+        DyeSetError::Csv { path, cause } => Failure::file(&path, cause),
         DyeSetError::QuantumYield { path, dye, found } => Failure::file(
             &path,
             format!(

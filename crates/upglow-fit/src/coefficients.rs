@@ -1,6 +1,6 @@
 //! Fits tables of sigmoid coefficients, for programs that cannot read cubes.
 
-use upglow::{CoefficientTable, Integrator, Model, Sigmoid};
+use upglow::{CoefficientTable, Model, Sigmoid};
 use upglow_color::rounding::to_single;
 use upglow_color::{Contract, Goal, Grid, LinearRgb, Metric};
 
@@ -34,7 +34,7 @@ pub fn fit_coefficients(
     let fitter = Fitter::new(contract, &Model::Reflectance, options)?;
     let blank = vec![[0.0; 3]; 3 * resolution.pow(3)];
     let brightness = CoefficientTable::levels(resolution);
-    let blank = CoefficientTable::new(brightness.clone(), blank, None)?;
+    let blank = CoefficientTable::new(brightness.clone(), blank)?;
     let count = 3 * resolution * resolution;
     let columns = Stage::new("fitting", count, watch)
         .each(count, |column| Column { fitter: &fitter, table: &blank, column }.follow())?;
@@ -44,7 +44,7 @@ pub fn fit_coefficients(
             nodes.extend(of_channel.iter().map(|column| column[step]));
         }
     }
-    Ok(CoefficientTable::new(brightness, nodes, Some(Integrator::of(contract)))?)
+    Ok(CoefficientTable::new(brightness, nodes)?.with_integrator(contract))
 }
 
 /// CIEDE2000 between `points` random colors of the contract's RGB space and the reflectances that

@@ -1,8 +1,9 @@
 //! Files that the programs read and write.
 
+use std::io::ErrorKind;
 use std::path::Path;
 
-use upglow::{Aside, AsideError, write_whole};
+use upglow::Aside;
 
 use crate::failure::Failure;
 use crate::output::size;
@@ -29,24 +30,20 @@ pub fn check_output(path: &Path) -> Result<(), Failure> {
         let message = format!("no folder {}, expected an existing one", folder.display());
         return Err(Failure::file(path, message));
     }
-    match Aside::create(path) {
-        Ok(_) => Ok(()),
-        Err(AsideError::Io(error)) => {
-            let expected = format!("a folder to write in, other than {}", folder.display());
-            Err(Failure::system(path, &error, expected))
-        }
-        Err(error) => Err(Failure::file(path, error)),
-    }
+    Aside::create(path).map(drop).map_err(|error| {
+        let expected = format!("a folder to write in, other than {}", folder.display());
+        Failure::system(path, &error, expected)
+    })
 }
 
 /// Writes a file, as a whole or not at all.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    write_whole(path, bytes).map_err(|error| match error {
-        AsideError::Io(error) => {
+    Aside::write_whole(path, bytes).map_err(|error| match error.kind() {
+        ErrorKind::InvalidInput => Failure::file(path, error),
+        _ => {
             let room = size(bytes.len() as u64);
             Failure::system(path, &error, format!("room for {room} and the right to write"))
         }
-        error => Failure::file(path, error),
     })
 }
 

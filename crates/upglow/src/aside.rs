@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
-/// A file written aside, beside its place, and renamed when it is whole; dropped before, it leaves
-/// nothing, and what stood at its place stays.
+/// A file that is written under a temporary name beside its path and renamed when it is complete.
+/// Dropped before that, it leaves nothing behind, and a file already at the path stays.
 #[must_use = "a file that is not committed is not written"]
 #[derive(Debug)]
 pub struct Aside {
@@ -14,30 +14,20 @@ pub struct Aside {
     path: PathBuf,
 }
 
-/// Why a file cannot be written.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum AsideError {
-    /// The path names something that is not a file.
-    #[error("not a file, expected a path to write a file at")]
-    NotAFile,
-    /// The file cannot be made or filled.
-    #[error("{0}")]
-    Io(#[from] io::Error),
-}
-
 /// Writers bring tens of kilobytes at a time; fewer, larger writes save system calls.
 const BUFFER_BYTES: usize = 1 << 20;
 
 impl Aside {
-    /// Starts the file that will stand at `path`.
+    /// Starts the file that [`Aside::commit`] will put at `path`.
     ///
     /// # Errors
     ///
-    /// [`AsideError`] if the path is no file's, or its folder takes no files.
-    pub fn create(path: &Path) -> Result<Self, AsideError> {
+    /// [`io::ErrorKind::InvalidInput`] if the path ends without a file name or names something
+    /// other than a file; the system's error if its folder cannot be written to.
+    pub fn create(path: &Path) -> io::Result<Self> {
         if path.file_name().is_none() || path.metadata().is_ok_and(|found| !found.is_file()) {
-            return Err(AsideError::NotAFile);
+            let message = "not a file, expected a path to write a file at";
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
         }
         let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let aside = tempfile::Builder::new().prefix(".upglow-").tempfile_in(folder)?;
@@ -48,7 +38,7 @@ impl Aside {
     ///
     /// # Errors
     ///
-    /// The system's error; then nothing is left behind.
+    /// The system's error; nothing is left behind.
     pub fn commit(self) -> io::Result<u64> {
         let aside = self.file.into_inner().map_err(io::IntoInnerError::into_error)?;
         aside.as_file().sync_all()?;
@@ -56,6 +46,17 @@ impl Aside {
         let bytes = aside.as_file().metadata()?.len();
         aside.persist(self.path).map_err(|e| e.error)?;
         Ok(bytes)
+    }
+
+    /// Writes a file whose whole content is at hand.
+    ///
+    /// # Errors
+    ///
+    /// As [`Aside::create`] and [`Aside::commit`]; nothing is left behind.
+    pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
+        let mut aside = Self::create(path)?;
+        aside.write_all(bytes)?;
+        aside.commit().map(drop)
     }
 }
 
@@ -73,18 +74,6 @@ impl Seek for Aside {
     fn seek(&mut self, to: io::SeekFrom) -> io::Result<u64> {
         self.file.seek(to)
     }
-}
-
-/// Writes a file whose content is at hand, whole or not at all.
-///
-/// # Errors
-///
-/// [`AsideError`] if the path is no file's or cannot be written; nothing is left behind.
-pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), AsideError> {
-    let mut aside = Aside::create(path)?;
-    aside.write_all(bytes)?;
-    aside.commit()?;
-    Ok(())
 }
 
 /// Gives a file the permissions that any new file has; temporary ones are private.
@@ -122,9 +111,9 @@ mod tests {
     #[test]
     fn a_failed_write_leaves_nothing() {
         let folder = tempfile::tempdir().unwrap();
-        let error = write_whole(folder.path(), b"x").unwrap_err().to_string();
+        let error = Aside::write_whole(folder.path(), b"x").unwrap_err().to_string();
         assert_eq!(error, "not a file, expected a path to write a file at");
-        assert!(write_whole(&folder.path().join("no/such/folder/x"), b"x").is_err());
+        assert!(Aside::write_whole(&folder.path().join("no/such/folder/x"), b"x").is_err());
         assert_eq!(folder.path().read_dir().unwrap().count(), 0);
     }
 }

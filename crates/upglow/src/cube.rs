@@ -49,19 +49,19 @@ pub struct Cube {
     nodes: Vec<Node>,
 }
 
-/// How the materials of a cube were found. Nothing is known by default.
-#[derive(Clone, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+/// How the materials of a cube were found; empty by default.
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct FitRecord {
     /// Name of the color difference that was minimized.
     pub metric: String,
     /// Greatest |dr/dλ| allowed, 1/nm; `None` for no limit.
     pub slope_max_per_nm: Option<f64>,
-    /// How often each node looked at its neighbors' materials.
+    /// How often each node tried its neighbors' materials.
     pub sweeps: u32,
-    /// Name of the way materials were searched for.
+    /// Name of the search method.
     pub method: String,
-    /// Evaluations of residuals and derivatives that it took.
+    /// Evaluations of residuals and derivatives.
     pub evaluations: u64,
 }
 

@@ -8,7 +8,7 @@
 //! - fluorescence: [`Model`], [`DyeSet`], [`DyeModel`], [`AnalyticModel`]
 //! - color: [`ModelOnGrid`], and [`ColorTable`] for whole images
 //! - cubes: [`Cube`], [`Interpolation`]; files are described in `docs/cube-format.md`
-//! - files that appear whole or not at all: [`Aside`], [`write_whole`]
+//! - files that appear whole or not at all: [`Aside`]
 //! - evaluation and sampling: [`Bispectral`], [`Sample`]
 //! - inner loops: [`Cube::lookup_table`] gives a [`LookupTable`], which looks up a
 //!   [`PackedMixture`], a mixture in single precision; devices read [`Cube::packed_nodes`]
@@ -41,9 +41,9 @@ mod packed;
 #[cfg(test)]
 mod random;
 
-pub use aside::{Aside, AsideError, write_whole};
+pub use aside::Aside;
 pub use bispectral::{Bispectral, Draw, Sample};
-pub use cube::coefficient_table::{CoefficientTable, CoefficientTableError, Integrator};
+pub use cube::coefficient_table::{CoefficientTable, CoefficientTableError};
 pub use cube::error::{CubeFileError, ReadCubeError};
 pub use cube::interpolation::Interpolation;
 pub use cube::{Cube, CubeError, FitRecord, LookupError, Node, NodeError};

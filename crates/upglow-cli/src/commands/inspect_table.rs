@@ -56,7 +56,7 @@ pub(super) fn run(args: InspectArgs, console: &Console) -> Result<(), Failure> {
         file: args.file.display().to_string(),
         bytes: bytes.len() as u64,
         resolution: table.resolution(),
-        integrator: table.integrator().is_some(),
+        integrator: table.has_integrator(),
         rgb_space: contract.space.name().into(),
         illuminant: contract.illuminant.name().into(),
         points: POINTS,

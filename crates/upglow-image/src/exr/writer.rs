@@ -5,7 +5,7 @@ use std::path::Path;
 
 use half::f16;
 use rayon::prelude::*;
-use upglow::{Aside, AsideError};
+use upglow::Aside;
 use upglow_color::RgbSpace;
 
 use super::attribute::{Attributes, chromaticities};
@@ -89,10 +89,7 @@ impl ExrDescription {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum WriteExrError {
-    /// The file cannot be started.
-    #[error(transparent)]
-    Create(#[from] AsideError),
-    /// The file cannot be filled or named.
+    /// The file cannot be written.
     #[error(transparent)]
     Io(#[from] io::Error),
     /// The picture is empty or too large.

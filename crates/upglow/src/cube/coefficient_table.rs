@@ -25,9 +25,9 @@ pub struct CoefficientTable {
     integrator: Option<Integrator>,
 }
 
-/// How a reflectance becomes RGB, at the end of files since 2026.
+/// How a reflectance becomes RGB: the end of files since 2026.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Integrator {
+struct Integrator {
     /// Weights of the reflectance at [`Integrator::SAMPLES`] wavelengths from 360 to 830 nm,
     /// `[red, green, blue][wavelength]`.
     rgb_weights: [Vec<f32>; 3],
@@ -35,11 +35,11 @@ pub struct Integrator {
     white: [f32; 3],
 }
 
-/// Why bytes are no table of coefficients.
+/// Why a table of coefficients is invalid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CoefficientTableError {
-    /// It begins with other bytes.
+    /// The content does not begin with `SPEC`.
     #[error("it begins with {found:?}, expected \"SPEC\", a table of coefficients")]
     Magic {
         /// The first bytes as text.
@@ -64,15 +64,15 @@ pub enum CoefficientTableError {
     /// Levels of brightness do not rise from 0 to 1.
     #[error("brightness level {index} is {found}, expected levels that rise from 0 to 1")]
     Brightness {
-        /// Its number.
+        /// Its index.
         index: usize,
         /// The level found.
         found: f32,
     },
-    /// A coefficient is no number.
+    /// A coefficient is not finite.
     #[error("coefficient {index} is {found}, expected a finite number")]
     Coefficient {
-        /// Its number in the file's order.
+        /// Its index in the file's order.
         index: usize,
         /// What it is.
         found: f32,
@@ -106,11 +106,7 @@ impl CoefficientTable {
     ///
     /// [`CoefficientTableError`] if levels do not rise from 0 to 1, a coefficient is not finite,
     /// or there are not 3·n³ nodes for n levels.
-    pub fn new(
-        brightness: Vec<f32>,
-        nodes: Vec<[f32; 3]>,
-        integrator: Option<Integrator>,
-    ) -> Result<Self, CoefficientTableError> {
+    pub fn new(brightness: Vec<f32>, nodes: Vec<[f32; 3]>) -> Result<Self, CoefficientTableError> {
         let resolution = brightness.len();
         check_resolution(resolution)?;
         let expected = CHANNELS * resolution.pow(3);
@@ -125,7 +121,7 @@ impl CoefficientTable {
         if let Some((index, &found)) = odd {
             return Err(CoefficientTableError::Coefficient { index, found });
         }
-        Ok(Self { brightness, nodes, integrator })
+        Ok(Self { brightness, nodes, integrator: None })
     }
 
     /// Nodes along each axis.
@@ -143,9 +139,16 @@ impl CoefficientTable {
         &self.nodes
     }
 
-    /// What turns a reflectance into RGB, where the file has it.
-    pub fn integrator(&self) -> Option<&Integrator> {
-        self.integrator.as_ref()
+    /// Adds the sums that turn a reflectance into RGB under the light and observer of a contract,
+    /// which newer readers expect at the end of a file.
+    #[must_use]
+    pub fn with_integrator(self, contract: &Contract) -> Self {
+        Self { integrator: Some(Integrator::of(contract)), ..self }
+    }
+
+    /// Whether the file says how a reflectance becomes RGB.
+    pub fn has_integrator(&self) -> bool {
+        self.integrator.is_some()
     }
 
     /// The color of a node: `largest` is a channel, the others are indices along the axes.
@@ -166,7 +169,8 @@ impl CoefficientTable {
         let largest = (1..3).fold(0, |i, j| if rgb[j] >= rgb[i] { j } else { i });
         let value = rgb[largest];
         if value <= 0.0 {
-            return sigmoid_of(self.nodes[0].map(f64::from));
+            let [c0, c1, c2] = self.nodes[0].map(f64::from);
+            return Sigmoid { c0, c1, c2 };
         }
         let along = |channel: usize| self.along(rgb[(largest + channel) % 3] / value);
         let axes = [self.level_of(value), along(2), along(1)];
@@ -181,7 +185,8 @@ impl CoefficientTable {
             let node = self.nodes[place];
             (0..3).for_each(|k| coefficients[k] += weight * f64::from(node[k]));
         }
-        sigmoid_of(coefficients)
+        let [c0, c1, c2] = coefficients;
+        Sigmoid { c0, c1, c2 }
     }
 
     /// Between which of evenly spaced nodes a fraction lies, and how far from the first.
@@ -237,21 +242,22 @@ impl CoefficientTable {
             _ => return Err(wrong_length(bytes.len() - trailer.len())),
         };
         let (brightness, nodes) = numbers.split_at(resolution);
-        Self::new(brightness.to_vec(), nodes.as_chunks().0.to_vec(), integrator)
+        let table = Self::new(brightness.to_vec(), nodes.as_chunks().0.to_vec())?;
+        Ok(Self { integrator, ..table })
     }
 }
 
 impl Integrator {
     /// Wavelengths from 360 to 830 nm at which it takes a reflectance.
-    pub const SAMPLES: usize = 283;
-    /// Samples in the file: those after [`Integrator::SAMPLES`] stand at 0 nm and weigh nothing.
-    pub const SLOTS: usize = 288;
+    const SAMPLES: usize = 283;
+    /// Samples in the file: those after [`Integrator::SAMPLES`] are at 0 nm and have weight 0.
+    const SLOTS: usize = 288;
     const BYTES: usize = 4 * (1 + 4 * Self::SLOTS + 9 + 3);
     const FIRST_NM: f64 = 360.0;
     const RANGE_NM: f64 = 470.0;
 
     /// Sums under the light and observer of a contract, over the straight lines between samples.
-    pub fn of(contract: &Contract) -> Self {
+    fn of(contract: &Contract) -> Self {
         let colorimetry = contract.on(Grid::FINE);
         let to_rgb = colorimetry.rgb_from_xyz_matrix();
         let mut rgb_weights = [[0.0; Self::SAMPLES]; 3];
@@ -274,16 +280,6 @@ impl Integrator {
             xyz_from_rgb: colorimetry.xyz_from_rgb_matrix().0.map(|row| row.map(to_single)),
             white: colorimetry.white().0.map(to_single),
         }
-    }
-
-    /// Linear RGB of a reflectance.
-    pub fn rgb(&self, reflectance: Sigmoid) -> [f64; 3] {
-        let step_nm = Self::RANGE_NM / (Self::SAMPLES - 1) as f64;
-        self.rgb_weights.each_ref().map(|weights| {
-            let terms = weights.iter().enumerate();
-            let at = |i: usize| reflectance.at(Self::FIRST_NM + i as f64 * step_nm);
-            terms.map(|(i, w)| f64::from(*w) * at(i)).sum()
-        })
     }
 
     fn append_to(&self, bytes: &mut Vec<u8>) {
@@ -321,11 +317,8 @@ impl Integrator {
 
 fn check_resolution(found: usize) -> Result<(), CoefficientTableError> {
     let [least, most] = CoefficientTable::RESOLUTIONS;
-    if (least..=most).contains(&found) {
-        Ok(())
-    } else {
-        Err(CoefficientTableError::Resolution { found })
-    }
+    let valid = (least..=most).contains(&found);
+    valid.then_some(()).ok_or(CoefficientTableError::Resolution { found })
 }
 
 fn check_levels(levels: &[f32]) -> Result<(), CoefficientTableError> {
@@ -344,10 +337,6 @@ fn read_numbers(bytes: &[u8]) -> Vec<f32> {
     bytes.as_chunks().0.iter().map(|four| f32::from_le_bytes(*four)).collect()
 }
 
-fn sigmoid_of([c0, c1, c2]: [f64; 3]) -> Sigmoid {
-    Sigmoid { c0, c1, c2 }
-}
-
 fn smooth_step(x: f64) -> f64 {
     x * x * (3.0 - 2.0 * x)
 }
@@ -360,8 +349,18 @@ mod tests {
     fn table(resolution: usize) -> CoefficientTable {
         let nodes =
             (0..3 * resolution.pow(3)).map(|i| [0.0, 1e-4 * to_single(i as f64), -0.5]).collect();
-        let integrator = Some(Integrator::of(&Contract::default()));
-        CoefficientTable::new(CoefficientTable::levels(resolution), nodes, integrator).unwrap()
+        let levels = CoefficientTable::levels(resolution);
+        CoefficientTable::new(levels, nodes).unwrap().with_integrator(&Contract::default())
+    }
+
+    /// Linear RGB of a reflectance.
+    fn rgb(integrator: &Integrator, reflectance: Sigmoid) -> [f64; 3] {
+        let step_nm = Integrator::RANGE_NM / (Integrator::SAMPLES - 1) as f64;
+        integrator.rgb_weights.each_ref().map(|weights| {
+            let terms = weights.iter().enumerate();
+            let at = |i: usize| reflectance.at(Integrator::FIRST_NM + i as f64 * step_nm);
+            terms.map(|(i, w)| f64::from(*w) * at(i)).sum()
+        })
     }
 
     #[test]
@@ -406,7 +405,7 @@ mod tests {
         const SINGLE: f64 = 1e-6;
         let integrator = Integrator::of(&Contract::default());
         for gray in [0.18, 0.5, 1.0 - 1e-9] {
-            for v in integrator.rgb(Sigmoid::flat(gray)) {
+            for v in rgb(&integrator, Sigmoid::flat(gray)) {
                 assert!((v - gray).abs() < SINGLE, "{v} {gray}");
             }
         }

@@ -2,38 +2,30 @@
 
 use std::error::Error;
 use std::fmt::Debug;
+use std::io;
 use std::path::PathBuf;
 
-use crate::aside::AsideError;
 use crate::cube::CubeError;
 
-/// Why a cube's file cannot be read or written: where, and the cause.
+/// Why a cube's file cannot be read or written.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CubeFileError {
-    /// The file cannot be read.
-    #[error("{}: {source}", path.display())]
-    Read {
+    /// The file cannot be read or written.
+    #[error("{}: {cause}", path.display())]
+    Io {
         /// The file.
         path: PathBuf,
         /// What the system said.
-        source: std::io::Error,
+        cause: io::Error,
     },
     /// The file is not a cube that this program reads.
-    #[error("{}: {source}", path.display())]
+    #[error("{}: {cause}", path.display())]
     Content {
         /// The file.
         path: PathBuf,
         /// What is wrong with it.
-        source: ReadCubeError,
-    },
-    /// The file cannot be written.
-    #[error("{}: {source}", path.display())]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: AsideError,
+        cause: ReadCubeError,
     },
 }
 
@@ -43,8 +35,8 @@ pub enum CubeFileError {
 pub enum ReadCubeError {
     /// The file is not a whole safetensors file.
     #[error("not a whole safetensors file ({0}), expected a cube made by upglow")]
-    Container(#[from] safetensors::SafeTensorError),
-    /// There is no header entry of ours.
+    Container(safetensors::SafeTensorError),
+    /// The header has no entry `upglow`.
     #[error("no `upglow` entry in the header, expected a cube made by upglow")]
     NotACube,
     /// The file is of another version.
@@ -57,8 +49,8 @@ pub enum ReadCubeError {
     },
     /// The header is not what this version writes.
     #[error("header: {0}")]
-    Header(#[source] serde_json::Error),
-    /// A field of the header has another value than it must have.
+    Header(serde_json::Error),
+    /// A field of the header differs from the only value that this version reads.
     #[error("header field {field} is {found}, expected {expected}")]
     Field {
         /// The field.
@@ -68,13 +60,13 @@ pub enum ReadCubeError {
         /// What it should be.
         expected: String,
     },
-    /// A field of the header has a value that makes nothing.
-    #[error("header field {field}: {source}")]
+    /// A field of the header has an invalid value.
+    #[error("header field {field}: {cause}")]
     Value {
         /// The field.
         field: &'static str,
         /// What is wrong with its value.
-        source: Box<dyn Error + Send + Sync>,
+        cause: Box<dyn Error + Send + Sync>,
     },
     /// A tensor is absent or has another type or shape.
     #[error("tensor {name} is {found}, expected {expected}")]
@@ -86,7 +78,7 @@ pub enum ReadCubeError {
         /// What it should be.
         expected: String,
     },
-    /// The content is not what was written.
+    /// The content was changed after it was written.
     #[error("checksum {found}, expected {expected}: the file was altered or damaged")]
     Checksum {
         /// SHA-256 of the content, first eight digits.
@@ -94,13 +86,13 @@ pub enum ReadCubeError {
         /// SHA-256 in the file, first eight digits.
         expected: String,
     },
-    /// The numbers do not make a cube.
+    /// The numbers describe no cube.
     #[error(transparent)]
     Cube(#[from] CubeError),
 }
 
 impl ReadCubeError {
-    /// Checks that a field has the value that it must have.
+    /// Checks that a field has the expected value.
     pub(crate) fn check<T: PartialEq + Debug + ?Sized>(
         field: &'static str,
         found: &T,
@@ -113,10 +105,10 @@ impl ReadCubeError {
         Err(Self::Field { field, found, expected })
     }
 
-    /// Makes an error about a field of the cause.
+    /// Turns a cause into an error about a field.
     pub(crate) fn value<E: Error + Send + Sync + 'static>(
         field: &'static str,
     ) -> impl FnOnce(E) -> Self {
-        move |error| Self::Value { field, source: error.into() }
+        move |error| Self::Value { field, cause: error.into() }
     }
 }

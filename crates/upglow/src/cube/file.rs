@@ -10,9 +10,9 @@ use safetensors::{Dtype, SafeTensors, View};
 use sha2::{Digest, Sha256};
 use upglow_color::Grid;
 
-use crate::aside::write_whole;
+use crate::aside::Aside;
 use crate::cube::error::{CubeFileError, ReadCubeError};
-use crate::cube::header::{Curves, ENTRY, Header, holds_observer};
+use crate::cube::header::{ENTRY, Header, StoredCurves, holds_observer};
 use crate::cube::{Cube, CubeError, Node};
 use crate::material::model::Model;
 
@@ -53,25 +53,22 @@ impl View for &Tensor {
 }
 
 impl Tensor {
-    fn of_singles(
-        name: &'static str,
-        shape: Vec<usize>,
-        values: impl Iterator<Item = f32>,
-    ) -> Self {
-        Self { name, dtype: Dtype::F32, shape, bytes: values.flat_map(f32::to_le_bytes).collect() }
+    fn singles(name: &'static str, shape: &[usize], values: impl Iterator<Item = f32>) -> Self {
+        let bytes = values.flat_map(f32::to_le_bytes).collect();
+        Self { name, dtype: Dtype::F32, shape: shape.into(), bytes }
     }
 
-    fn of_doubles<'v>(
+    fn doubles<'v>(
         name: &'static str,
-        shape: Vec<usize>,
+        shape: &[usize],
         values: impl Iterator<Item = &'v f64>,
     ) -> Self {
         let bytes = values.flat_map(|v| v.to_le_bytes()).collect();
-        Self { name, dtype: Dtype::F64, shape, bytes }
+        Self { name, dtype: Dtype::F64, shape: shape.into(), bytes }
     }
 
-    fn of_bytes(name: &'static str, shape: Vec<usize>, bytes: Vec<u8>) -> Self {
-        Self { name, dtype: Dtype::U8, shape, bytes }
+    fn bytes(name: &'static str, shape: &[usize], bytes: Vec<u8>) -> Self {
+        Self { name, dtype: Dtype::U8, shape: shape.into(), bytes }
     }
 }
 
@@ -85,13 +82,13 @@ impl Cube {
         let header = self.header_of(&tensors);
         let content = tensors.iter().map(|t| (t.name, t.dtype, &t.shape[..], &t.bytes[..]));
         let checksum = checksum(&header, content);
-        tensors.push(Tensor::of_bytes(CHECKSUM, vec![checksum.len()], checksum));
+        tensors.push(Tensor::bytes(CHECKSUM, &[checksum.len()], checksum));
         let metadata = HashMap::from([(ENTRY.to_owned(), header)]);
         let views = tensors.iter().map(|t| (t.name, t));
         safetensors::serialize(views, Some(metadata)).expect("arrays are as long as their shapes")
     }
 
-    /// What the cube's file says of itself, as JSON: contract, model, fit, without the curves.
+    /// The file's header as JSON: contract, model and fit, without the curves.
     pub fn header_json(&self) -> String {
         self.header_of(&self.tensors())
     }
@@ -105,48 +102,41 @@ impl Cube {
     ///
     /// # Errors
     ///
-    /// [`CubeFileError::Write`] if the path cannot be written.
+    /// [`CubeFileError::Io`] if the path cannot be written.
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), CubeFileError> {
         let path = path.as_ref();
-        write_whole(path, &self.to_bytes())
-            .map_err(|source| CubeFileError::Write { path: path.into(), source })
+        Aside::write_whole(path, &self.to_bytes())
+            .map_err(|cause| CubeFileError::Io { path: path.into(), cause })
     }
 
     fn tensors(&self) -> Vec<Tensor> {
         let n = self.resolution();
+        let (one, three) = ([n, n, n], [n, n, n, 3]);
         let nodes = || self.nodes().iter();
         let fine = Grid::FINE.len();
+        let power = self.contract().illuminant.power().values();
         let mut tensors = vec![
-            Tensor::of_singles(
-                REFLECTANCE,
-                vec![n, n, n, 3],
-                nodes().flat_map(|node| node.reflectance),
-            ),
-            Tensor::of_singles(DE2000, vec![n, n, n], nodes().map(|node| node.de2000)),
-            Tensor::of_doubles(
-                ILLUMINANT,
-                vec![fine],
-                self.contract().illuminant.power().values().iter(),
-            ),
+            Tensor::singles(REFLECTANCE, &three, nodes().flat_map(|node| node.reflectance)),
+            Tensor::singles(DE2000, &one, nodes().map(|node| node.de2000)),
+            Tensor::doubles(ILLUMINANT, &[fine], power.iter()),
         ];
         if holds_observer(self.contract()) {
             let matching = self.contract().observer.matching();
             let samples = matching.iter().flat_map(|curve| curve.values());
-            tensors.push(Tensor::of_doubles(OBSERVER, vec![matching.len(), fine], samples));
+            tensors.push(Tensor::doubles(OBSERVER, &[matching.len(), fine], samples));
         }
-        let fluorescence = || nodes().flat_map(|node| node.fluorescence);
         if !matches!(self.model(), Model::Reflectance) {
-            let shape = vec![n, n, n, 3];
-            tensors.push(Tensor::of_singles(FLUORESCENCE, shape, fluorescence()));
+            let fluorescence = nodes().flat_map(|node| node.fluorescence);
+            tensors.push(Tensor::singles(FLUORESCENCE, &three, fluorescence));
         }
         if let Model::Dyes(model) = self.model() {
             let dyes = nodes().map(|node| node.dye).collect();
-            tensors.push(Tensor::of_bytes(DYE, vec![n, n, n], dyes));
+            tensors.push(Tensor::bytes(DYE, &one, dyes));
             let set = model.set().dyes();
             let curves = set
                 .iter()
                 .flat_map(|dye| dye.absorption.values().iter().chain(dye.emission.values()));
-            tensors.push(Tensor::of_doubles(DYE_CURVES, vec![set.len(), 2, fine], curves));
+            tensors.push(Tensor::doubles(DYE_CURVES, &[set.len(), 2, fine], curves));
         }
         tensors
     }
@@ -158,10 +148,10 @@ impl Cube {
     /// [`CubeFileError`] if it cannot be read or is not a cube; no content panics.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, CubeFileError> {
         let path = path.as_ref();
-        let bytes = std::fs::read(path)
-            .map_err(|source| CubeFileError::Read { path: path.into(), source })?;
+        let bytes =
+            std::fs::read(path).map_err(|cause| CubeFileError::Io { path: path.into(), cause })?;
         Self::from_bytes(&bytes)
-            .map_err(|source| CubeFileError::Content { path: path.into(), source })
+            .map_err(|cause| CubeFileError::Content { path: path.into(), cause })
     }
 
     /// Reads a cube from the content of its file.
@@ -170,11 +160,11 @@ impl Cube {
     ///
     /// [`ReadCubeError`] says what was found and what was expected.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, ReadCubeError> {
-        let (_, metadata) = SafeTensors::read_metadata(bytes)?;
+        let (_, metadata) = SafeTensors::read_metadata(bytes).map_err(ReadCubeError::Container)?;
         let json = metadata.metadata().as_ref().and_then(|entries| entries.get(ENTRY));
         let json = json.ok_or(ReadCubeError::NotACube)?;
         let header = Header::parse(json)?;
-        let file = SafeTensors::deserialize(bytes)?;
+        let file = SafeTensors::deserialize(bytes).map_err(ReadCubeError::Container)?;
         check_sum(json, &file)?;
         let n = header.resolution;
         let [least, most] = Self::RESOLUTIONS;
@@ -185,7 +175,7 @@ impl Cube {
         let contract = header.contract.to_contract(curves.illuminant, curves.observer)?;
         let model = header.model.to_model(curves.dyes)?;
         let nodes = read_nodes(&file, n, &model)?;
-        Ok(Self::new(contract, model, header.fit.to_record(), n, nodes)?)
+        Ok(Self::new(contract, model, header.fit, n, nodes)?)
     }
 }
 
@@ -250,7 +240,7 @@ fn triples(bytes: &[u8]) -> Vec<[f32; 3]> {
     singles(bytes).collect::<Vec<_>>().as_chunks().0.to_vec()
 }
 
-fn read_curves(file: &SafeTensors<'_>, header: &Header) -> Result<Curves, ReadCubeError> {
+fn read_curves(file: &SafeTensors<'_>, header: &Header) -> Result<StoredCurves, ReadCubeError> {
     let fine = Grid::FINE.len();
     let illuminant = doubles(tensor(file, ILLUMINANT, Dtype::F64, &[fine])?);
     let observer = if header.holds_observer() {
@@ -259,7 +249,7 @@ fn read_curves(file: &SafeTensors<'_>, header: &Header) -> Result<Curves, ReadCu
     } else {
         None
     };
-    Ok(Curves { illuminant, observer, dyes: read_dyes(file, header.model.dye_count())? })
+    Ok(StoredCurves { illuminant, observer, dyes: read_dyes(file, header.model.dye_count())? })
 }
 
 /// Absorption and emission of each dye.
@@ -286,14 +276,13 @@ fn read_nodes(file: &SafeTensors<'_>, n: usize, model: &Model) -> Result<Vec<Nod
         _ => vec![0; count],
     };
     let numbers = reflectances.into_iter().zip(fluorescences).zip(dyes).zip(de2000);
-    Ok(numbers
-        .map(|(((reflectance, fluorescence), dye), de2000)| Node {
-            reflectance,
-            dye,
-            fluorescence,
-            de2000,
-        })
-        .collect())
+    let node = |(((reflectance, fluorescence), dye), de2000)| Node {
+        reflectance,
+        dye,
+        fluorescence,
+        de2000,
+    };
+    Ok(numbers.map(node).collect())
 }
 
 #[cfg(test)]
@@ -390,7 +379,7 @@ mod tests {
         let header = edit(&cube.header_of(&tensors));
         let content = tensors.iter().map(|t| (t.name, t.dtype, &t.shape[..], &t.bytes[..]));
         let sum = checksum(&header, content);
-        tensors.push(Tensor::of_bytes(CHECKSUM, vec![sum.len()], sum));
+        tensors.push(Tensor::bytes(CHECKSUM, &[sum.len()], sum));
         let metadata = HashMap::from([(ENTRY.to_owned(), header)]);
         let views = tensors.iter().map(|t| (t.name, t));
         Cube::from_bytes(&safetensors::serialize(views, Some(metadata)).unwrap())

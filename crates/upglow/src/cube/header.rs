@@ -15,8 +15,8 @@ use crate::material::model::Model;
 /// Name of the file's only metadata entry.
 pub(crate) const ENTRY: &str = "upglow";
 
-/// Versions of the file format that this program reads. It writes the first that can say what the cube
-/// holds, so that older programs read all they can understand.
+/// Versions of the file format that this program reads. It writes the lowest one that can hold the
+/// cube, so that older programs can read it.
 const FORMAT_VERSIONS: [u32; 2] = [1, WITH_OBSERVER];
 
 /// The first version that holds color-matching functions; before, they are CIE 1931 2°.
@@ -34,7 +34,7 @@ pub(crate) struct Header {
     pub(crate) axes: String,
     pub(crate) contract: ContractHeader,
     pub(crate) model: ModelHeader,
-    pub(crate) fit: FitHeader,
+    pub(crate) fit: FitRecord,
     pub(crate) tensors: Vec<String>,
 }
 
@@ -79,18 +79,8 @@ pub(crate) struct DyeHeader {
     provenance: String,
 }
 
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct FitHeader {
-    metric: String,
-    slope_max_per_nm: Option<f64>,
-    sweeps: u32,
-    method: String,
-    evaluations: u64,
-}
-
 /// The curves that the header names and the file's tensors hold.
-pub(crate) struct Curves {
+pub(crate) struct StoredCurves {
     /// Power of the illuminant on [`Grid::FINE`].
     pub(crate) illuminant: Vec<f64>,
     /// Color-matching functions on [`Grid::FINE`], where the file holds any.
@@ -118,7 +108,7 @@ impl Header {
             axes: NODE_AXES.into(),
             contract: ContractHeader::of(cube.contract()),
             model: ModelHeader::of(cube.model()),
-            fit: FitHeader::of(cube.fit()),
+            fit: cube.fit().clone(),
             tensors,
         }
     }
@@ -246,15 +236,11 @@ impl ModelHeader {
                 DyeModel::new(set, options).map(Model::Dyes).map_err(ReadCubeError::value("model"))
             }
             Self::Analytic { absorption_fwhm_nm, emission_fwhm_nm, accounting, quantum_yield } => {
+                let widths_nm = [*absorption_fwhm_nm, *emission_fwhm_nm];
                 let accounting = parse_field("accounting", accounting)?;
-                AnalyticModel::new(
-                    *absorption_fwhm_nm,
-                    *emission_fwhm_nm,
-                    accounting,
-                    *quantum_yield,
-                )
-                .map(Model::Analytic)
-                .map_err(ReadCubeError::value("model"))
+                AnalyticModel::new(widths_nm[0], widths_nm[1], accounting, *quantum_yield)
+                    .map(Model::Analytic)
+                    .map_err(ReadCubeError::value("model"))
             }
         }
     }
@@ -272,18 +258,6 @@ impl DyeHeader {
             quantum_yield: self.measured_quantum_yield,
             provenance: self.provenance.clone(),
         })
-    }
-}
-
-impl FitHeader {
-    fn of(fit: &FitRecord) -> Self {
-        let FitRecord { metric, slope_max_per_nm, sweeps, method, evaluations } = fit.clone();
-        Self { metric, slope_max_per_nm, sweeps, method, evaluations }
-    }
-
-    pub(crate) fn to_record(&self) -> FitRecord {
-        let Self { metric, slope_max_per_nm, sweeps, method, evaluations } = self.clone();
-        FitRecord { metric, slope_max_per_nm, sweeps, method, evaluations }
     }
 }
 

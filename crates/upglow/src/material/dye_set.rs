@@ -16,7 +16,7 @@ pub struct DyeSet {
 /// Dyes in a cube are numbered by one byte.
 const MOST_DYES: usize = 255;
 
-/// Why there is no such set of dyes.
+/// Why a set of dyes is unknown or invalid.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum DyeSetError {
@@ -30,20 +30,20 @@ pub enum DyeSetError {
         found: String,
     },
     /// The folder or a file in it cannot be read.
-    #[error("{}: {source}", path.display())]
+    #[error("{}: {cause}", path.display())]
     Read {
-        /// What was read.
+        /// The file or folder.
         path: PathBuf,
         /// What the system said.
-        source: std::io::Error,
+        cause: std::io::Error,
     },
     /// A file is not a dye.
-    #[error("{}: {source}", path.display())]
+    #[error("{}: {cause}", path.display())]
     Csv {
         /// The file.
         path: PathBuf,
         /// What is wrong with it.
-        source: SpectrumCsvError,
+        cause: SpectrumCsvError,
     },
     /// A curve of a dye is zero everywhere or above 1.
     #[error("dye {dye}: the {curve} peaks at {peak}, expected a peak in 0..1, 0 excluded")]
@@ -70,14 +70,14 @@ pub enum DyeSetError {
     /// A quantum yield in the folder's list is not a fraction.
     #[error("{}: quantum yield {found:?} of {dye}, expected a number from 0 to 1 or nothing", path.display())]
     QuantumYield {
-        /// The list.
+        /// The list's path.
         path: PathBuf,
         /// The dye.
         dye: String,
         /// The cell.
         found: String,
     },
-    /// The folder's list has no column of files or none of quantum yields.
+    /// The folder's list lacks the column of files or that of quantum yields.
     #[error("{}: header {found:?}, expected columns file and quantum_yield", path.display())]
     Columns {
         /// The list.
@@ -178,7 +178,7 @@ fn check_curve(
 }
 
 fn csv_files(folder: &Path) -> Result<Vec<PathBuf>, DyeSetError> {
-    let failed = |source| DyeSetError::Read { path: folder.into(), source };
+    let failed = |cause| DyeSetError::Read { path: folder.into(), cause };
     let entries: Vec<_> = std::fs::read_dir(folder).and_then(Iterator::collect).map_err(failed)?;
     let mut files: Vec<PathBuf> = entries.iter().map(std::fs::DirEntry::path).collect();
     files.retain(|f| f.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv")));
@@ -187,13 +187,13 @@ fn csv_files(folder: &Path) -> Result<Vec<PathBuf>, DyeSetError> {
 }
 
 fn read_text(path: &Path) -> Result<String, DyeSetError> {
-    std::fs::read_to_string(path).map_err(|source| DyeSetError::Read { path: path.into(), source })
+    std::fs::read_to_string(path).map_err(|cause| DyeSetError::Read { path: path.into(), cause })
 }
 
 fn read_dye(path: &Path, yields: &[(String, f64)]) -> Result<MeasuredDye, DyeSetError> {
     let text = read_text(path)?;
     let [absorption, emission] = read_columns(&text, ["absorption", "emission"], SampleRules::DYE)
-        .map_err(|source| DyeSetError::Csv { path: path.into(), source })?;
+        .map_err(|cause| DyeSetError::Csv { path: path.into(), cause })?;
     let file = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
     let quantum_yield = yields.iter().find(|(listed, _)| *listed == file).map(|(_, q)| *q);
     let name = path.file_stem().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
