@@ -1,4 +1,4 @@
-//! What a material answers to a renderer.
+//! The trait by which a renderer evaluates and samples a material.
 
 /// A material that reflects and re-radiates: [`crate::Mixture`] in double precision,
 /// [`crate::PackedMixture`] in single.
@@ -29,7 +29,7 @@
 ///     assert_eq!(per_nm, mixture.incident_pdf_per_nm(sample.nm, 540.0));
 /// }
 /// let sample = mixture.sample_outgoing(500.0, [0.1, 0.5]).ok_or("absorbs everything")?;
-/// // All but what measured emissions have outside their tables.
+/// // They differ by the part of a measured emission that lies outside its table.
 /// assert!((sample.throughput / mixture.albedo(500.0) - 1.0).abs() < 0.01);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -37,32 +37,32 @@ pub trait Bispectral {
     /// `f32` or `f64`.
     type Real: Copy;
 
-    /// Whether any light comes back at another wavelength.
+    /// Whether any light is re-emitted at another wavelength.
     fn is_fluorescent(&self) -> bool;
 
     /// Share of incident light at `lambda_nm` that is reflected at the same wavelength, 0..=1:
     /// (1 − c·a(λ))·r(λ).
     fn reflectance(&self, lambda_nm: Self::Real) -> Self::Real;
 
-    /// [`Bispectral::reflectance`] at each of `lambda_nm`, as far as there is room in `shares`.
+    /// [`Bispectral::reflectance`] at each of `lambda_nm`, up to the length of `shares`.
     fn reflectances(&self, lambda_nm: &[Self::Real], shares: &mut [Self::Real]) {
         for (share, nm) in shares.iter_mut().zip(lambda_nm) {
             *share = self.reflectance(*nm);
         }
     }
 
-    /// Energy that comes out per nm at `out_nm` by fluorescence, per unit that came in at `in_nm`;
+    /// Energy re-emitted per nm at `out_nm` by fluorescence, per unit of incident energy at `in_nm`;
     /// 1/nm. Reflection at the same wavelength is [`Bispectral::reflectance`].
     fn reradiation_per_nm(&self, in_nm: Self::Real, out_nm: Self::Real) -> Self::Real;
 
-    /// Share of incident light at `in_nm` that comes out at any wavelength, 0..=1.
+    /// Share of the incident energy at `in_nm` that leaves at any wavelength, 0..=1.
     fn albedo(&self, in_nm: Self::Real) -> Self::Real;
 
-    /// Draws the wavelength of incident light, given that of the light that leaves: for a path from
-    /// the camera. `u` are two independent numbers in 0..1; the first chooses between reflection and
-    /// fluorescence, the second draws the wavelength.
+    /// Draws the incident wavelength for a known outgoing one: for a path from the camera. `u` are
+    /// two independent numbers in 0..1; the first chooses between reflection and fluorescence, the
+    /// second draws the wavelength.
     ///
-    /// `None` where nothing can leave at `out_nm`.
+    /// `None` if no light can leave at `out_nm`.
     fn sample_incident(&self, out_nm: Self::Real, u: [Self::Real; 2])
     -> Option<Sample<Self::Real>>;
 
@@ -72,11 +72,11 @@ pub trait Bispectral {
     /// The probability, 0..=1, that [`Bispectral::sample_incident`] keeps the wavelength.
     fn incident_elastic_probability(&self, out_nm: Self::Real) -> Self::Real;
 
-    /// Draws the wavelength of the light that leaves, given that of incident light: for a path from
-    /// the light. `u` are two independent numbers in 0..1; the first chooses between reflection and
-    /// fluorescence, the second draws the wavelength.
+    /// Draws the outgoing wavelength for a known incident one: for a path from the light. `u` are
+    /// two independent numbers in 0..1; the first chooses between reflection and fluorescence, the
+    /// second draws the wavelength.
     ///
-    /// `None` where nothing of the light at `in_nm` leaves.
+    /// `None` if all light at `in_nm` is absorbed.
     fn sample_outgoing(&self, in_nm: Self::Real, u: [Self::Real; 2]) -> Option<Sample<Self::Real>>;
 
     /// The density, 1/nm, with which [`Bispectral::sample_outgoing`] draws `out_nm` by fluorescence.
@@ -92,8 +92,8 @@ pub trait Bispectral {
 pub struct Sample<T> {
     /// The wavelength drawn, nm.
     pub nm: T,
-    /// Factor of the path's throughput: what the material carries at the known wavelength divided
-    /// by the density (elastic: the probability) of the one drawn; the same for every sample.
+    /// Factor of the path's throughput: reflectance or re-radiation divided by the probability or
+    /// density of the draw. It depends on the known wavelength only.
     pub throughput: T,
     /// How the wavelength was drawn and how likely it was.
     pub draw: Draw<T>,
@@ -104,13 +104,13 @@ pub struct Sample<T> {
 pub enum Draw<T> {
     /// The wavelength was kept.
     Elastic {
-        /// How likely that was, 0..=1.
+        /// The probability of that, 0..=1.
         probability: T,
     },
     /// The wavelength was changed.
     Fluorescent {
-        /// The density of the wavelength drawn, 1/nm; over all of them it adds up to 1 less the
-        /// probability of the elastic draw.
+        /// The density of the wavelength drawn, 1/nm. Its integral is 1 less the probability of the
+        /// elastic draw.
         per_nm: T,
     },
 }

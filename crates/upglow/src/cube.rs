@@ -65,16 +65,15 @@ pub struct FitRecord {
     pub evaluations: u64,
 }
 
-/// One stored material and how far it is from its color.
+/// One stored material and its distance from the color it is for.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Node {
     /// Wavelength (nm), level and slope (1/nm) of the reflectance's [`Edge`].
     pub reflectance: [f32; 3],
     /// Number of the first dye in the ring; 0 where no dye is used.
     pub dye: u8,
-    /// What the model needs besides the dye; the last number used is the concentration:
-    /// weight, concentration for dyes; emission peak (nm), Stokes shift (nm), concentration for
-    /// bells; zeros where nothing fluoresces.
+    /// The other numbers of the model. Dyes: weight, concentration, 0. Bells: emission peak (nm),
+    /// Stokes shift (nm), concentration. Zeros where nothing fluoresces.
     pub fluorescence: [f32; 3],
     /// CIEDE2000 of this material against the node's color under the contract.
     pub de2000: f32,
@@ -94,7 +93,18 @@ pub enum LookupError {
     },
 }
 
-/// Why nodes do not make a cube.
+impl LookupError {
+    /// The error for a color with a component that is not in 0..=1.
+    #[cold]
+    pub(crate) fn outside(rgb: [f64; 3]) -> Self {
+        let mut named = ["red", "green", "blue"].into_iter().zip(rgb);
+        let found = named.find(|(_, v)| !(0.0..=1.0).contains(v));
+        let (channel, value) = found.unwrap_or(("red", rgb[0]));
+        Self::Outside { channel, value }
+    }
+}
+
+/// Why nodes describe no cube.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CubeError {
@@ -113,16 +123,12 @@ pub enum CubeError {
         expected: usize,
     },
     /// A node's numbers describe no material of the model.
-    #[error("node [{}][{}][{}] (blue, green, red): {what} is {found}, expected {expected}", .node[0], .node[1], .node[2])]
+    #[error("node [{}][{}][{}] (blue, green, red): {cause}", .node[0], .node[1], .node[2])]
     Node {
         /// Blue, green and red index.
         node: [usize; 3],
-        /// Which number.
-        what: &'static str,
-        /// The number found.
-        found: f32,
-        /// What it should be.
-        expected: &'static str,
+        /// What is wrong with it.
+        cause: NodeError,
     },
 }
 
@@ -164,10 +170,8 @@ impl Cube {
         }
         let cube = Self { contract, model, fit, resolution, nodes };
         for (index, node) in cube.nodes.iter().enumerate() {
-            if let Err(NodeError { what, found, expected }) = node.check(&cube.model) {
-                let node = cube.coordinates(index);
-                return Err(CubeError::Node { node, what, found, expected });
-            }
+            node.check(&cube.model)
+                .map_err(|cause| CubeError::Node { node: cube.coordinates(index), cause })?;
         }
         Ok(cube)
     }
@@ -221,10 +225,8 @@ impl Cube {
     ///
     /// [`LookupError::Outside`] if a component is not a number in 0..=1.
     pub fn corners(&self, rgb: LinearRgb) -> Result<[(usize, f64); 4], LookupError> {
-        for (channel, value) in ["red", "green", "blue"].into_iter().zip(rgb.0) {
-            if !(0.0..=1.0).contains(&value) {
-                return Err(LookupError::Outside { channel, value });
-            }
+        if !rgb.0.iter().all(|v| (0.0..=1.0).contains(v)) {
+            return Err(LookupError::outside(rgb.0));
         }
         let n = self.resolution;
         Ok(tetrahedron(n, rgb).map(|([b, g, r], weight)| ((b * n + g) * n + r, weight)))

@@ -1,8 +1,8 @@
 //! The run-time half of upglow: materials for any RGB color, looked up and evaluated.
 //!
 //! A [`Cube`] holds one [`Material`] for each node of a grid over RGB. A look-up mixes the four
-//! materials around a color into a [`Mixture`], without allocation, and a mixture answers what a
-//! renderer asks through the trait [`Bispectral`].
+//! materials around a color into a [`Mixture`], without allocation. A renderer evaluates and samples
+//! the mixture through the trait [`Bispectral`].
 //!
 //! - reflectance: [`Sigmoid`], [`Vertex`], [`Features`], [`Edge`]
 //! - fluorescence: [`Model`], [`DyeSet`], [`DyeModel`], [`AnalyticModel`]
@@ -68,7 +68,7 @@ pub use packed::node::PackedNode;
 mod tests {
     use super::*;
 
-    /// Renderers share cubes and tables between threads, and hand materials over.
+    /// Renderers share cubes and tables between threads, and pass materials to other threads.
     #[test]
     fn threads_share_what_a_renderer_holds() {
         const fn shared<T: Send + Sync>() {}

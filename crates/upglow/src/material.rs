@@ -18,12 +18,12 @@ pub(crate) mod sigmoid;
 
 use sigmoid::Sigmoid;
 
-/// One material in six numbers at most. What they mean is said by the [`crate::Model`] it was made for.
+/// One material in at most six numbers, to be read with the [`crate::Model`] it was made for.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Material {
-    /// What the material reflects where nothing is absorbed by fluorescence.
+    /// Reflectance before the fluorescence absorbs its share.
     pub reflectance: Sigmoid,
-    /// What it absorbs and gives back at other wavelengths.
+    /// What it absorbs and re-emits at other wavelengths.
     pub fluorescence: Fluorescence,
 }
 
@@ -39,16 +39,16 @@ pub enum Fluorescence {
         first: usize,
         /// Share of the neighbor, 0..=1.
         weight: f64,
-        /// How much of the light at the absorption's peak is absorbed, 0..=1.
+        /// Share of the light at the absorption's peak that is absorbed, 0..=1.
         concentration: f64,
     },
-    /// Bells by formula.
+    /// Bell-shaped absorption and emission by formula.
     Analytic {
         /// Wavelength of the emission's peak, nm.
         emission_peak_nm: f64,
         /// Distance from the absorption's peak to the emission's, nm.
         stokes_shift_nm: f64,
-        /// How much of the light at the absorption's peak is absorbed, 0..=1.
+        /// Share of the light at the absorption's peak that is absorbed, 0..=1.
         concentration: f64,
     },
 }

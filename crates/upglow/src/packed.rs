@@ -1,4 +1,4 @@
-//! Materials in the numbers that inner loops and devices read: single precision, in vectors.
+//! Materials in single precision, as inner loops and devices read them.
 
 pub(crate) mod bells;
 pub(crate) mod color_table;

@@ -8,8 +8,8 @@ use crate::material::sigmoid::Sigmoid;
 /// Reflectances for the RGB colors of a unit cube, in the layout that `rgb2spec` defined and that
 /// Mitsuba 3, pbrt-v4 and colour-science read.
 ///
-/// Such a file names neither its RGB space nor its light, and knows neither fluorescence nor a
-/// slope limit between its nodes; [`crate::Cube`] does. Use it for programs that read nothing else.
+/// Such a file names neither its RGB space nor its light, and holds neither fluorescence nor a slope
+/// limit between its nodes; a [`crate::Cube`] does. Use it for programs that read nothing else.
 ///
 /// Nodes are `[largest][brightness][next but one][next][coefficient]`: which channel is the largest,
 /// its value by [`CoefficientTable::brightness`], and the two channels after it (red follows blue)
@@ -90,8 +90,8 @@ const MAGIC: &[u8; 4] = b"SPEC";
 const CHANNELS: usize = 3;
 
 impl CoefficientTable {
-    /// Smallest and greatest number of nodes along an axis. Of 150 levels of brightness the last
-    /// two are one number in single precision.
+    /// Smallest and greatest number of nodes along an axis. With 150 levels of brightness, the last
+    /// two are equal in single precision.
     pub const RESOLUTIONS: [usize; 2] = [2, 128];
 
     /// The levels of brightness that the published program writes: dense at both ends.

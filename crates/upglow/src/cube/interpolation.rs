@@ -1,4 +1,4 @@
-//! What stands between the nodes of a cube.
+//! How colors between the nodes of a cube are interpolated.
 
 use upglow_color::{LinearRgb, choices};
 
@@ -51,9 +51,9 @@ impl Interpolation {
     }
 }
 
-type Corners = [(f64, Material); 4];
+type Weighted = [(f64, Material); 4];
 
-fn nearest(mut corners: Corners) -> Corners {
+fn nearest(mut corners: Weighted) -> Weighted {
     let heaviest = (1..4).fold(0, |best, i| if corners[i].0 > corners[best].0 { i } else { best });
     for (i, (weight, _)) in corners.iter_mut().enumerate() {
         *weight = if i == heaviest { 1.0 } else { 0.0 };
@@ -61,13 +61,13 @@ fn nearest(mut corners: Corners) -> Corners {
     corners
 }
 
-fn coefficients(corners: &Corners) -> Sigmoid {
+fn coefficients(corners: &Weighted) -> Sigmoid {
     let mix = |of: fn(&Sigmoid) -> f64| corners.iter().map(|(w, m)| w * of(&m.reflectance)).sum();
     Sigmoid { c0: mix(|r| r.c0), c1: mix(|r| r.c1), c2: mix(|r| r.c2) }
 }
 
 /// `None` where a corner that takes part is flat or straight, or the mean slope is zero.
-fn features(corners: &Corners) -> Option<Sigmoid> {
+fn features(corners: &Weighted) -> Option<Sigmoid> {
     let mut mean = Features { shift_nm: 0.0, width_nm: 0.0, slope_per_nm: 0.0 };
     for (weight, material) in corners.iter().filter(|(weight, _)| *weight > 0.0) {
         let corner = material.reflectance.to_vertex()?.to_features()?;
@@ -78,7 +78,7 @@ fn features(corners: &Corners) -> Option<Sigmoid> {
     mean.to_sigmoid().ok()
 }
 
-fn signs_differ(corners: &Corners) -> bool {
+fn signs_differ(corners: &Weighted) -> bool {
     let signs = || corners.iter().filter(|(w, _)| *w > 0.0).map(|(_, m)| m.reflectance.c0);
     signs().any(|c0| c0 > 0.0) && signs().any(|c0| c0 < 0.0)
 }
@@ -95,8 +95,8 @@ pub(crate) fn tetrahedron(resolution: usize, rgb: LinearRgb) -> [([usize; 3], f6
         corner[k] = lower_node(position, resolution);
         fraction[k] = position - corner[k] as f64;
     }
-    // From the dark corner one axis at a time, the largest fraction first. Ranks stand for
-    // branches: in an image one color does not foretell the order of the next one's channels.
+    // From the dark corner one axis at a time, the largest fraction first. Ranks replace
+    // branches, because processors cannot predict the order of an image's channels.
     let [r, g, b] = fraction;
     let rank = [
         usize::from(g > r) + usize::from(b > r),

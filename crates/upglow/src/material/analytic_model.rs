@@ -70,7 +70,7 @@ impl AnalyticModel {
         self.accounting
     }
 
-    /// Share of absorbed light that comes out, 0..=1.
+    /// Share of absorbed light that is re-emitted, 0..=1.
     pub fn quantum_yield(&self) -> f64 {
         self.quantum_yield
     }
@@ -86,7 +86,7 @@ impl AnalyticModel {
         Bell::new(center_nm, self.emission_fwhm_nm).area_one(lambda_nm)
     }
 
-    /// The absorption around `center_nm`; its peak is 1, that of the bell's area is not.
+    /// The absorption around `center_nm`: a bell with a peak of 1.
     pub(crate) fn absorption_bell(&self, center_nm: f64) -> Bell {
         Bell::new(center_nm, self.absorption_fwhm_nm)
     }

@@ -35,16 +35,12 @@ impl Bell {
         at(to_nm) - at(from_nm)
     }
 
-    /// ∫ λ·b dλ below a wavelength, nm, for the bell b of area 1.
-    fn moment_below(self, nm: f64) -> f64 {
-        let u = (nm - self.center_nm) / self.step_nm;
-        self.center_nm * cubic_area(u) + self.step_nm * cubic_moment(u)
-    }
-
     /// ∫ b·min(λ / `limit_nm`, 1) dλ below a wavelength, for the bell b of area 1.
     pub(crate) fn shared_area_below(self, limit_nm: f64, nm: f64) -> f64 {
-        let rising = self.moment_below(nm.min(limit_nm)) / limit_nm;
-        rising + self.area_between(nm.min(limit_nm), nm)
+        let below_nm = nm.min(limit_nm);
+        let u = (below_nm - self.center_nm) / self.step_nm;
+        let moment = self.center_nm * cubic_area(u) + self.step_nm * cubic_moment(u);
+        moment / limit_nm + self.area_between(below_nm, nm)
     }
 
     /// The wavelength below which `u` of the area lies, `u` in 0..=1.
@@ -83,9 +79,10 @@ impl Bell {
     }
 }
 
-/// More steps are never taken: where Newton's leaves the bracket, it is halved.
+/// Enough for every quantile: where Newton's step leaves the bracket, the bracket is halved.
 const NEWTON_STEPS: usize = 60;
-/// A quantile this close is found. Larger shows in a test of the samples, smaller costs a step.
+/// The search ends when a step is shorter. A larger limit fails a test of the samples, a smaller
+/// one costs a step.
 const QUANTILE_NM: f64 = 1e-9;
 
 /// The distance from the center within which `y` of the area lies on one side, 0 ≤ y ≤ 11/24.

@@ -1,12 +1,12 @@
-//! Curves as densities that wavelengths are drawn from.
+//! Sampled curves as densities for drawing wavelengths.
 
 use upglow_color::Spectrum;
 use upglow_color::rounding::whole;
 
 use crate::material::formula::Accounting;
 
-/// Entries of the table that starts a search. More take room in the caches; fewer leave more bins
-/// of 1 nm to walk through.
+/// Entries of the table that starts a search. More entries take cache, fewer leave more bins of
+/// 1 nm to step through.
 const GUIDES: usize = 128;
 
 /// A sampled curve as a density: straight lines between samples, zero outside, any area.
@@ -61,7 +61,7 @@ impl Distribution {
         self.area[self.area.len() - 1]
     }
 
-    /// ∫ curve·share dλ, with the share of energy that may come out around `mean_nm`.
+    /// ∫ curve·share dλ, with the share of energy that may be emitted around `mean_nm`.
     pub(crate) fn shared_total(&self, accounting: Accounting, mean_nm: f64) -> f64 {
         match accounting {
             Accounting::Energy => self.total(),
@@ -83,8 +83,8 @@ impl Distribution {
         self.position(bin, self.solve_area(bin, target - self.area[bin]))
     }
 
-    /// A wavelength with the density of the curve times the share of energy that may come out
-    /// around `mean_nm`, from `u` in 0..1.
+    /// A wavelength with the density of the curve times the share of energy that may be
+    /// emitted around `mean_nm`, from `u` in 0..1.
     pub(crate) fn sample_shared(&self, accounting: Accounting, mean_nm: f64, u: f64) -> f64 {
         if accounting == Accounting::Energy {
             return self.sample(u);
@@ -225,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn no_number_leaves_the_range_of_the_curve() {
+    fn every_draw_is_in_the_range_of_the_curve() {
         let distribution = Distribution::new(&curve());
         for u in [0.0, 1.0_f64.next_down(), 1.0, 2.0, -1.0, f64::NAN, f64::INFINITY] {
             let drawn =

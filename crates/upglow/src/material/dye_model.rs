@@ -10,12 +10,12 @@ use crate::material::dye_set::DyeSet;
 use crate::material::formula::{Accounting, Mixing};
 use crate::material::model_error::{ModelError, check_yield};
 
-/// How much of what a dye absorbs comes out.
+/// The share of absorbed light that a dye re-emits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum QuantumYield {
     /// The same for every dye, 0..=1.
     Fixed(f64),
-    /// The yield that was measured for each dye, and 1 where none was published.
+    /// The yield measured for each dye, and 1 where none was published.
     Measured,
 }
 
@@ -57,7 +57,7 @@ pub struct DyeCurves {
     pub absorption: Spectrum,
     /// Emission of unit area, 1/nm, on [`Grid::FINE`].
     pub emission: Spectrum,
-    /// Share of absorbed light that comes out, 0..=1.
+    /// Share of absorbed light that is re-emitted, 0..=1.
     pub quantum_yield: f64,
     /// Mean wavelength of the emission, nm.
     pub mean_emission_nm: f64,
@@ -97,7 +97,7 @@ impl DyeModel {
         &self.set
     }
 
-    /// The rules it was made with.
+    /// The options it was made with.
     pub fn options(&self) -> DyeOptions {
         self.options
     }
@@ -120,7 +120,7 @@ impl DyeModel {
         }
     }
 
-    /// Dyes whose quantum yield nobody published, in ring order.
+    /// Names of the dyes without a published quantum yield, in ring order.
     pub fn without_published_yield(&self) -> Vec<&str> {
         let unknown = self.set.dyes().iter().filter(|dye| dye.quantum_yield.is_none());
         unknown.map(|dye| dye.name.as_str()).collect()

@@ -1,4 +1,4 @@
-//! Dyes as a material uses them, and rings of dyes.
+//! Rings of measured dyes, built in or read from a folder.
 
 use std::path::{Path, PathBuf};
 
@@ -45,27 +45,15 @@ pub enum DyeSetError {
         /// What is wrong with it.
         cause: SpectrumCsvError,
     },
-    /// A curve of a dye is zero everywhere or above 1.
-    #[error("dye {dye}: the {curve} peaks at {peak}, expected a peak in 0..1, 0 excluded")]
-    Peak {
+    /// A curve of a dye is negative, zero everywhere or above 1.
+    #[error("dye {dye}: the {curve} {problem}")]
+    Curve {
         /// The dye.
         dye: String,
         /// Which curve.
         curve: &'static str,
-        /// The greatest sample.
-        peak: f64,
-    },
-    /// A sample of a curve is below zero.
-    #[error("dye {dye}: the {curve} is {found} at {wavelength_nm} nm, expected 0 or more")]
-    Negative {
-        /// The dye.
-        dye: String,
-        /// Which curve.
-        curve: &'static str,
-        /// Where, nm.
-        wavelength_nm: f64,
-        /// The sample.
-        found: f64,
+        /// What was found, and what is expected.
+        problem: String,
     },
     /// A quantum yield in the folder's list is not a fraction.
     #[error("{}: quantum yield {found:?} of {dye}, expected a number from 0 to 1 or nothing", path.display())]
@@ -115,7 +103,7 @@ impl DyeSet {
     ///
     /// # Errors
     ///
-    /// [`DyeSetError::Unknown`] lists the names there are.
+    /// [`DyeSetError::Unknown`] lists the known names.
     pub fn named(name: &str) -> Result<Self, DyeSetError> {
         let set = MeasuredDye::set(name).ok_or_else(|| DyeSetError::Unknown { found: name.into() });
         let (stored_name, dyes) = set?;
@@ -147,7 +135,7 @@ impl DyeSet {
         Self::new(&name, dyes)
     }
 
-    /// The name that files state; that of `konig8` is `seed8`.
+    /// The name that files hold; for `konig8` it is `seed8`.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -167,14 +155,13 @@ fn check_curve(
     limit: f64,
 ) -> Result<(), DyeSetError> {
     let mut sampled = samples.grid().wavelengths_nm().zip(samples.values());
-    if let Some((wavelength_nm, &found)) = sampled.find(|(_, v)| **v < 0.0) {
-        return Err(DyeSetError::Negative { dye: dye.name.clone(), curve, wavelength_nm, found });
-    }
     let peak = samples.values().iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    if peak > 0.0 && peak <= limit {
-        return Ok(());
-    }
-    Err(DyeSetError::Peak { dye: dye.name.clone(), curve, peak })
+    let problem = match sampled.find(|(_, sample)| **sample < 0.0) {
+        Some((nm, found)) => format!("is {found} at {nm} nm, expected 0 or more"),
+        None if peak > 0.0 && peak <= limit => return Ok(()),
+        None => format!("peaks at {peak}, expected a peak in 0..1, 0 excluded"),
+    };
+    Err(DyeSetError::Curve { dye: dye.name.clone(), curve, problem })
 }
 
 fn csv_files(folder: &Path) -> Result<Vec<PathBuf>, DyeSetError> {
@@ -200,7 +187,7 @@ fn read_dye(path: &Path, yields: &[(String, f64)]) -> Result<MeasuredDye, DyeSet
     Ok(MeasuredDye { name, absorption, emission, quantum_yield, provenance: file })
 }
 
-/// File and quantum yield of each line of the list that states one.
+/// File and quantum yield of each line of the list that has a yield.
 fn read_yields(path: &Path) -> Result<Vec<(String, f64)>, DyeSetError> {
     let text = read_text(path)?;
     let mut lines = text.lines().map(split_quoted);
@@ -222,7 +209,7 @@ fn read_yields(path: &Path) -> Result<Vec<(String, f64)>, DyeSetError> {
         .collect()
 }
 
-/// The cells of one CSV line, whose commas may stand in double quotes.
+/// The cells of one CSV line; commas inside double quotes do not separate.
 fn split_quoted(line: &str) -> Vec<String> {
     let mut cells = vec![String::new()];
     let mut quoted = false;

@@ -7,10 +7,9 @@ use crate::material::sigmoid::{Sigmoid, sigmoid};
 /// With P = `level`, s = `slope_per_nm` and d = λ − `edge_nm`, the parabola is
 /// x = P + 2s(1 + P²)^(3/2)·d + 6s²P(1 + P²)²·d².
 ///
-/// This form holds every [`Sigmoid`], flat and straight ones too, and nothing in it grows without
-/// bound: cubes store it, fits move in it, and the slope limit is a bound of one number. It is
-/// [`crate::Features`] seen from its edge: `edge_nm` is shift ± width, and P is what that pair
-/// leaves unsaid.
+/// This form describes every [`Sigmoid`], including flat and straight ones, with bounded numbers:
+/// cubes store it, fits optimize it, and the slope limit bounds a single number. Compared with
+/// [`crate::Features`], `edge_nm` is shift ± width.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Edge {
     /// A wavelength at which |dr/dλ| is greatest, nm.
@@ -123,7 +122,7 @@ mod tests {
         }
 
         #[test]
-        fn it_survives_the_way_to_coefficients_and_back(edge in any_edge(), nm in 300.0..830.0) {
+        fn it_survives_conversion_to_coefficients_and_back(edge in any_edge(), nm in 300.0..830.0) {
             for near in [edge.edge_nm, 400.0, 700.0] {
                 let back = edge.to_sigmoid().to_edge(near);
                 prop_assert!((back.at(nm) - edge.at(nm)).abs() < 1e-6, "{back:?}");

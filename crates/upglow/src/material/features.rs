@@ -70,7 +70,7 @@ impl Features {
 }
 
 impl Vertex {
-    /// The features; `None` for a flat reflectance, whose features lie at infinity.
+    /// The features; `None` for a flat reflectance, whose width is infinite.
     ///
     /// The inverse of `konig`, Algorithm 1: P = (3p + σ√(9p² + 5)) / 5, w = √((P − p) / c0),
     /// s = c0·w / (1 + P²)^(3/2), with p the parabola at the extremum and σ the sign of c0.

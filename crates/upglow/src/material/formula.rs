@@ -8,25 +8,25 @@ use std::ops::{Add, Mul};
 
 use upglow_color::choices;
 
-/// What is conserved when absorbed light is given back.
+/// What is conserved when absorbed light is re-emitted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Accounting {
-    /// All absorbed energy times the quantum yield comes out, as König et al. 2020 have it.
+    /// The absorbed energy times the quantum yield is re-emitted (König et al. 2020).
     #[default]
     Energy,
-    /// Each absorbed photon comes out as `quantum yield` photons: light of λi comes out with the
-    /// share λi / λ̄e of its energy, with λ̄e the mean emission wavelength. Never above 1: what is
-    /// absorbed beyond λ̄e keeps its energy, so that none is made.
+    /// Each absorbed photon yields `quantum yield` photons: light of λi is re-emitted with the share
+    /// λi / λ̄e of its energy, with λ̄e the mean emission wavelength. The share is at most 1: light
+    /// absorbed beyond λ̄e gains no energy.
     Photon,
 }
 
-/// What two dyes in one material do with each other's light.
+/// How two dyes share the light in one material.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Mixing {
-    /// One absorption, one emission: what either absorbs comes out as the mixed emission.
+    /// One absorption and one emission: light absorbed by either dye leaves with the mixed emission.
     #[default]
     Pooled,
-    /// Each dye gives back what it absorbed itself.
+    /// Each dye re-emits what it absorbed itself.
     Separate,
 }
 
@@ -69,7 +69,8 @@ impl Number for f64 {
 pub(crate) type PerLobe<T> = [T; 2];
 
 impl Accounting {
-    /// The share of absorbed energy at `lambda_nm` that can come out around `mean_emission_nm`.
+    /// The share of the energy absorbed at `lambda_nm` that can be emitted around
+    /// `mean_emission_nm`, 0..=1.
     pub fn share(self, lambda_nm: f64, mean_emission_nm: f64) -> f64 {
         match self {
             Self::Energy => 1.0,
@@ -145,14 +146,13 @@ impl Mixing {
         concentration: T,
         weight: T,
     ) -> T {
-        match self {
-            Self::Pooled | Self::Separate => concentration * T::mixed(absorptions, weight),
-        }
+        // Pooled or separate, the sum is the same.
+        concentration * T::mixed(absorptions, weight)
     }
 
     /// The color that two dyes emit at concentration 1, and its derivative by the second's share,
-    /// `weight`. `absorbed` is what one of them absorbs of the light and may give back around a mean
-    /// wavelength (nm), and its derivative by that, 1/nm.
+    /// `weight`. `absorbed` is the energy that one of them absorbs and may re-emit around a mean
+    /// wavelength (nm), and its derivative by that wavelength, 1/nm.
     pub(crate) fn emitted(
         self,
         [a, b]: [&Emitter; 2],
@@ -160,8 +160,36 @@ impl Mixing {
         absorbed: impl Fn(&Emitter, f64) -> (f64, f64),
     ) -> Emitted<1> {
         match self {
-            Self::Pooled => pooled(a, b, weight, absorbed),
-            Self::Separate => separate(a, b, weight, absorbed),
+            Self::Pooled => {
+                let mix = |x: f64, y: f64| f64::mixed([x, y], weight);
+                let mean_nm = mix(a.mean_emission_nm, b.mean_emission_nm);
+                let (of_a, of_b) = (absorbed(a, mean_nm), absorbed(b, mean_nm));
+                let by_mean_nm = mix(of_a.1, of_b.1);
+                let absorbed_by_weight =
+                    of_b.0 - of_a.0 + by_mean_nm * (b.mean_emission_nm - a.mean_emission_nm);
+                let absorbed = mix(of_a.0, of_b.0);
+                let quantum_yield = mix(a.quantum_yield, b.quantum_yield);
+                let energy = quantum_yield * absorbed;
+                let energy_by_weight = (b.quantum_yield - a.quantum_yield) * absorbed
+                    + quantum_yield * absorbed_by_weight;
+                let stimulus = [0, 1, 2].map(|k| mix(a.stimulus[k], b.stimulus[k]));
+                Emitted {
+                    color: stimulus.map(|s| energy * s),
+                    derivatives: [[0, 1, 2].map(|k| {
+                        energy_by_weight * stimulus[k] + energy * (b.stimulus[k] - a.stimulus[k])
+                    })],
+                }
+            }
+            Self::Separate => {
+                let [of_a, of_b] = [a, b].map(|dye| {
+                    let energy = dye.quantum_yield * absorbed(dye, dye.mean_emission_nm).0;
+                    dye.stimulus.map(|s| energy * s)
+                });
+                Emitted {
+                    color: [0, 1, 2].map(|k| f64::mixed([of_a[k], of_b[k]], weight)),
+                    derivatives: [[0, 1, 2].map(|k| of_b[k] - of_a[k])],
+                }
+            }
         }
     }
 }
@@ -169,7 +197,7 @@ impl Mixing {
 /// A color and its derivatives by `N` parameters, `[parameter][X Y Z]`.
 #[derive(Clone, Copy, Debug)]
 pub struct Emitted<const N: usize> {
-    /// Color that a fluorescence of concentration 1 emits.
+    /// Color emitted at concentration 1.
     pub color: [f64; 3],
     /// Its derivatives by the model's parameters.
     pub derivatives: [[f64; 3]; N],
@@ -180,51 +208,10 @@ pub struct Emitted<const N: usize> {
 pub(crate) struct Emitter {
     /// Absorptance at concentration 1, `[wavelength]`.
     pub(crate) absorption: Vec<f64>,
-    /// What that absorbs of the light.
+    /// Energy of the light that it absorbs.
     pub(crate) absorbed: f64,
     /// Color of one unit of emitted energy.
     pub(crate) stimulus: [f64; 3],
     pub(crate) quantum_yield: f64,
     pub(crate) mean_emission_nm: f64,
-}
-
-fn pooled(
-    a: &Emitter,
-    b: &Emitter,
-    weight: f64,
-    absorbed: impl Fn(&Emitter, f64) -> (f64, f64),
-) -> Emitted<1> {
-    let mix = |x: f64, y: f64| f64::mixed([x, y], weight);
-    let mean_nm = mix(a.mean_emission_nm, b.mean_emission_nm);
-    let (of_a, of_b) = (absorbed(a, mean_nm), absorbed(b, mean_nm));
-    let by_mean_nm = mix(of_a.1, of_b.1);
-    let absorbed_by_weight =
-        of_b.0 - of_a.0 + by_mean_nm * (b.mean_emission_nm - a.mean_emission_nm);
-    let absorbed = mix(of_a.0, of_b.0);
-    let quantum_yield = mix(a.quantum_yield, b.quantum_yield);
-    let energy = quantum_yield * absorbed;
-    let energy_by_weight =
-        (b.quantum_yield - a.quantum_yield) * absorbed + quantum_yield * absorbed_by_weight;
-    let stimulus = [0, 1, 2].map(|k| mix(a.stimulus[k], b.stimulus[k]));
-    Emitted {
-        color: stimulus.map(|s| energy * s),
-        derivatives: [[0, 1, 2]
-            .map(|k| energy_by_weight * stimulus[k] + energy * (b.stimulus[k] - a.stimulus[k]))],
-    }
-}
-
-fn separate(
-    a: &Emitter,
-    b: &Emitter,
-    weight: f64,
-    absorbed: impl Fn(&Emitter, f64) -> (f64, f64),
-) -> Emitted<1> {
-    let [of_a, of_b] = [a, b].map(|dye| {
-        let energy = dye.quantum_yield * absorbed(dye, dye.mean_emission_nm).0;
-        dye.stimulus.map(|s| energy * s)
-    });
-    Emitted {
-        color: [0, 1, 2].map(|k| f64::mixed([of_a[k], of_b[k]], weight)),
-        derivatives: [[0, 1, 2].map(|k| of_b[k] - of_a[k])],
-    }
 }

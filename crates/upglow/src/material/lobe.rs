@@ -1,25 +1,24 @@
 //! The lobes of a material in double precision: what each absorbs, returns, emits and draws.
 
 use crate::material::Fluorescence;
-use crate::material::analytic_model::AnalyticModel;
 use crate::material::bell::Bell;
 use crate::material::dye_model::{DyeCurves, DyeModel, DyeOptions};
 use crate::material::formula::{Accounting, Mixing};
 use crate::material::model::Model;
 use crate::material::sampling::ratio;
 
-/// Light that one absorber takes and one emitter gives back.
+/// One absorption and one emission, with the rules that connect them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lobe<'m> {
     accounting: Accounting,
     quantum_yield: f64,
     mean_emission_nm: f64,
     concentration: f64,
-    curves: Curves<'m>,
+    spectra: Spectra<'m>,
 }
 
 #[derive(Clone, Copy, Debug)]
-enum Curves<'m> {
+enum Spectra<'m> {
     /// Lobe number `lobe` of two dyes.
     Dyes {
         dyes: [&'m DyeCurves; 2],
@@ -43,7 +42,18 @@ impl Fluorescence {
             (
                 Self::Analytic { emission_peak_nm, stokes_shift_nm, concentration },
                 Model::Analytic(model),
-            ) => [Some(bell_lobe(model, emission_peak_nm, stokes_shift_nm, concentration)), None],
+            ) => {
+                let emission = model.emission_bell(emission_peak_nm);
+                let absorption = model.absorption_bell(emission_peak_nm - stokes_shift_nm);
+                let bells = Lobe {
+                    accounting: model.accounting(),
+                    quantum_yield: model.quantum_yield(),
+                    mean_emission_nm: emission_peak_nm,
+                    concentration,
+                    spectra: Spectra::Bells { absorption, emission },
+                };
+                [Some(bells), None]
+            }
             _ => [None, None],
         };
         first.into_iter().chain(second)
@@ -66,82 +76,64 @@ fn dye_lobes(
             quantum_yield: quantum_yields[lobe],
             mean_emission_nm: means_nm[lobe],
             concentration,
-            curves: Curves::Dyes { dyes, weight, mixing, lobe },
+            spectra: Spectra::Dyes { dyes, weight, mixing, lobe },
         })
     })
-}
-
-fn bell_lobe(
-    model: &AnalyticModel,
-    emission_peak_nm: f64,
-    stokes_shift_nm: f64,
-    concentration: f64,
-) -> Lobe<'_> {
-    Lobe {
-        accounting: model.accounting(),
-        quantum_yield: model.quantum_yield(),
-        mean_emission_nm: emission_peak_nm,
-        concentration,
-        curves: Curves::Bells {
-            absorption: model.absorption_bell(emission_peak_nm - stokes_shift_nm),
-            emission: model.emission_bell(emission_peak_nm),
-        },
-    }
 }
 
 impl Lobe<'_> {
     /// Share of incident light at `lambda_nm` that the lobe absorbs.
     pub(crate) fn absorbed(&self, lambda_nm: f64) -> f64 {
-        match self.curves {
-            Curves::Dyes { dyes, weight, mixing, lobe } => {
+        match self.spectra {
+            Spectra::Dyes { dyes, weight, mixing, lobe } => {
                 let absorptions = dyes.map(|dye| dye.absorption.at(lambda_nm));
                 mixing.absorbed(absorptions, self.concentration, weight)[lobe]
             }
-            Curves::Bells { absorption, .. } => {
+            Spectra::Bells { absorption, .. } => {
                 self.concentration * absorption.peak_one(lambda_nm).0
             }
         }
     }
 
-    /// Share of incident energy at `lambda_nm` that comes out somewhere.
+    /// Share of the incident energy at `lambda_nm` that is re-emitted at any wavelength.
     pub(crate) fn returned(&self, lambda_nm: f64) -> f64 {
         let absorbed = self.absorbed(lambda_nm);
         self.accounting.returned(absorbed, self.quantum_yield, lambda_nm, self.mean_emission_nm)
     }
 
-    /// Where it comes out: a density of unit area, 1/nm.
+    /// The emission as a density of unit area, 1/nm.
     pub(crate) fn emission(&self, lambda_nm: f64) -> f64 {
-        match self.curves {
-            Curves::Dyes { .. } => self.of_dyes(|dye| dye.emission.at(lambda_nm)),
-            Curves::Bells { emission, .. } => emission.area_one(lambda_nm).0,
+        match self.spectra {
+            Spectra::Dyes { .. } => self.of_dyes(|dye| dye.emission.at(lambda_nm)),
+            Spectra::Bells { emission, .. } => emission.area_one(lambda_nm).0,
         }
     }
 
     /// The area of the emission between two wavelengths, 0..=1.
     pub(crate) fn emission_between(&self, from_nm: f64, to_nm: f64) -> f64 {
-        match self.curves {
-            Curves::Dyes { .. } => self.of_dyes(|dye| dye.emission.area(from_nm, to_nm)),
-            Curves::Bells { emission, .. } => emission.area_between(from_nm, to_nm),
+        match self.spectra {
+            Spectra::Dyes { .. } => self.of_dyes(|dye| dye.emission.area(from_nm, to_nm)),
+            Spectra::Bells { emission, .. } => emission.area_between(from_nm, to_nm),
         }
     }
 
-    /// ∫ ê dλ: 1, less what a measured emission that ends above zero has outside its tables.
+    /// ∫ ê dλ: below 1 where a measured emission does not fall to zero within its table.
     pub(crate) fn emitted_total(&self) -> f64 {
-        match self.curves {
-            Curves::Dyes { .. } => self.of_dyes(|dye| dye.emitting.total()),
-            Curves::Bells { .. } => 1.0,
+        match self.spectra {
+            Spectra::Dyes { .. } => self.of_dyes(|dye| dye.emitting.total()),
+            Spectra::Bells { .. } => 1.0,
         }
     }
 
     /// ∫ returned dλ over incident wavelengths, nm.
     pub(crate) fn returned_total_nm(&self) -> f64 {
-        let (concentration, area) = match self.curves {
-            Curves::Dyes { weight, mixing, lobe, .. } => {
+        let (concentration, area) = match self.spectra {
+            Spectra::Dyes { weight, mixing, lobe, .. } => {
                 let concentrations = mixing.concentrations(self.concentration, weight);
                 let [one, two] = self.areas(|dye| self.shared_total(dye));
                 (concentrations[lobe], one + two)
             }
-            Curves::Bells { absorption, .. } => {
+            Spectra::Bells { absorption, .. } => {
                 let share = match self.accounting {
                     Accounting::Energy => 1.0,
                     Accounting::Photon => {
@@ -157,12 +149,12 @@ impl Lobe<'_> {
 
     /// An incident wavelength with the density of what is returned, from `u` in 0..1.
     pub(crate) fn sample_absorbed(&self, u: f64) -> f64 {
-        match self.curves {
-            Curves::Dyes { dyes, .. } => {
+        match self.spectra {
+            Spectra::Dyes { dyes, .. } => {
                 let (dye, u) = pick(dyes, self.areas(|dye| self.shared_total(dye)), u);
                 dye.absorbing.sample_shared(self.accounting, self.mean_emission_nm, u)
             }
-            Curves::Bells { absorption, .. } => match self.accounting {
+            Spectra::Bells { absorption, .. } => match self.accounting {
                 Accounting::Energy => absorption.quantile(u),
                 Accounting::Photon => absorption.shared_quantile(self.mean_emission_nm, u),
             },
@@ -171,12 +163,12 @@ impl Lobe<'_> {
 
     /// An outgoing wavelength with the density of the emission, from `u` in 0..1.
     pub(crate) fn sample_emitted(&self, u: f64) -> f64 {
-        match self.curves {
-            Curves::Dyes { dyes, .. } => {
+        match self.spectra {
+            Spectra::Dyes { dyes, .. } => {
                 let (dye, u) = pick(dyes, self.areas(|dye| dye.emitting.total()), u);
                 dye.emitting.sample(u)
             }
-            Curves::Bells { emission, .. } => emission.quantile(u),
+            Spectra::Bells { emission, .. } => emission.quantile(u),
         }
     }
 
@@ -187,22 +179,22 @@ impl Lobe<'_> {
 
     /// A number of the lobe from those of its dyes; 0 for bells.
     fn of_dyes(&self, number: impl Fn(&DyeCurves) -> f64) -> f64 {
-        match self.curves {
-            Curves::Dyes { dyes, weight, mixing, lobe } => {
+        match self.spectra {
+            Spectra::Dyes { dyes, weight, mixing, lobe } => {
                 mixing.per_lobe(dyes.map(number), weight)[lobe]
             }
-            Curves::Bells { .. } => 0.0,
+            Spectra::Bells { .. } => 0.0,
         }
     }
 
     /// The parts that the two dyes have in the area of one of the lobe's curves; zeros for bells.
     fn areas(&self, area: impl Fn(&DyeCurves) -> f64) -> [f64; 2] {
-        match self.curves {
-            Curves::Dyes { dyes, weight, mixing, lobe } => {
+        match self.spectra {
+            Spectra::Dyes { dyes, weight, mixing, lobe } => {
                 let [one, two] = mixing.shares_of_dyes(lobe, weight);
                 [one * area(dyes[0]), two * area(dyes[1])]
             }
-            Curves::Bells { .. } => [0.0; 2],
+            Spectra::Bells { .. } => [0.0; 2],
         }
     }
 }

@@ -11,9 +11,9 @@ use crate::material::sampling::{Shares, ratio};
 
 /// A convex mixture of up to four materials of one model.
 ///
-/// The light that a mixture gives back is the weighted mean of what its materials give back, so a
-/// mixture of valid materials is valid: it conserves energy, its reflectance is a fraction and no
-/// steeper than theirs, and its color is the weighted mean of theirs.
+/// A mixture reflects and re-emits the weighted mean of what its materials do, so a mixture of valid
+/// materials is valid: it conserves energy, its reflectance is in 0..=1 and no steeper than theirs,
+/// and its color is the weighted mean of theirs.
 #[must_use]
 #[derive(Clone, Copy, Debug)]
 pub struct Mixture<'m> {
@@ -89,12 +89,12 @@ impl<'m> Mixture<'m> {
         })
     }
 
-    /// What leaves at `out_nm` of light that is 1 at every wavelength.
+    /// What leaves at `out_nm` under an equal-energy light of unit irradiance.
     fn shares_leaving(&self, out_nm: f64) -> Shares<Lobe<'m>> {
         self.shares(out_nm, |lobe| lobe.emission(out_nm) * lobe.returned_total_nm())
     }
 
-    /// What leaves of light at `in_nm`.
+    /// What leaves of unit light at `in_nm`.
     fn shares_arriving(&self, in_nm: f64) -> Shares<Lobe<'m>> {
         self.shares(in_nm, |lobe| lobe.returned(in_nm) * lobe.emitted_total())
     }
@@ -218,7 +218,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(16))]
 
         #[test]
-        fn no_wavelength_gives_back_more_than_it_brought(u in unit6(), v in unit6(), t in 0.0..1.0) {
+        fn no_more_energy_leaves_than_arrives(u in unit6(), v in unit6(), t in 0.0..1.0) {
             for model in models() {
                 let nothing = (0.0, Material::default());
                 let parts = [(t, material(&model, u)), (1.0 - t, material(&model, v)), nothing, nothing];

@@ -3,11 +3,11 @@
 use crate::material::analytic_model::AnalyticModel;
 use crate::material::dye_model::DyeModel;
 
-/// How the fluorescence of a material is described, and by what rules it gives light back.
+/// How the fluorescence of a material is described, and by what rules it re-emits light.
 ///
 /// It is not `#[non_exhaustive]`, nor are [`crate::Fluorescence`], [`crate::Mixing`],
-/// [`crate::Accounting`] and [`crate::Interpolation`]: the compiler then names every place that a new
-/// one must be thought of, in this workspace and in a renderer.
+/// [`crate::Accounting`] and [`crate::Interpolation`]: when one is added, the compiler names every
+/// place that must handle it, in this workspace and in a renderer.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Model {
     /// No fluorescence.

@@ -1,4 +1,4 @@
-//! The sums behind a material's color, with everything that does not depend on the material done.
+//! The sums behind a material's color, with all that does not depend on the material precomputed.
 
 use upglow_color::{Colorimetry, Xyz};
 
@@ -66,7 +66,7 @@ impl ModelOnGrid {
         mixing.emitted([a, b], weight, |dye, mean_nm| self.absorbed(dye, accounting, mean_nm))
     }
 
-    /// Energy that one dye absorbs and may give back around `mean_nm`, and its derivative by
+    /// Energy that one dye absorbs and may re-emit around `mean_nm`, and its derivative by
     /// `mean_nm`, 1/nm.
     fn absorbed(&self, dye: &Emitter, accounting: Accounting, mean_nm: f64) -> (f64, f64) {
         if accounting == Accounting::Energy {
@@ -163,7 +163,7 @@ impl Emitter {
     fn new(curves: &DyeCurves, colorimetry: &Colorimetry) -> Self {
         let grid = colorimetry.grid();
         let emission = curves.emission.resampled(grid);
-        // The sum over a coarse grid is not quite the area: without this energy would be made.
+        // The sum over a coarse grid differs from the area: without this, energy is not conserved.
         let area: f64 = emission.values().iter().sum();
         let mut stimulus = [0.0; 3];
         for (e, m) in emission.values().iter().zip(colorimetry.matching()) {

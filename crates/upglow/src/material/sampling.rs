@@ -1,15 +1,15 @@
-//! Choosing between what a mixture carries by reflection and by its lobes.
+//! Choosing between the reflection of a mixture and its fluorescent lobes.
 //!
-//! Both directions choose between the elastic part, which keeps the wavelength, and the fluorescent
-//! lobes in proportion to what each carries, and then draw from the chosen lobe exactly. Every sample
-//! then has the same throughput:
+//! Both directions choose between the elastic part, which keeps the wavelength, and the lobes in
+//! proportion to the light that each contributes, and then draw from the chosen lobe exactly. Every
+//! sample then has the same throughput:
 //!
 //! - from the camera, W(λo) = r(λo) + Σ ê(λo)·∫ returned(λ) dλ;
 //! - from the light, W(λi) = r(λi) + Σ returned(λi), the albedo.
 
 use crate::bispectral::{Draw, Sample};
 
-/// What is carried at one wavelength by reflection and by each fluorescent lobe `L`.
+/// The contributions of reflection and of each fluorescent lobe `L` at one wavelength.
 pub(crate) struct Shares<L> {
     elastic: f64,
     /// At most two lobes for each of four materials.
@@ -17,7 +17,7 @@ pub(crate) struct Shares<L> {
 }
 
 impl<L: Copy> Shares<L> {
-    /// What reflection carries, and each of at most eight lobes.
+    /// The contributions of reflection and of at most eight lobes.
     pub(crate) fn new(elastic: f64, carried: impl Iterator<Item = (f64, L)>) -> Self {
         let mut lobes = [None; 8];
         lobes.iter_mut().zip(carried).for_each(|(slot, carried)| *slot = Some(carried));
@@ -75,7 +75,7 @@ impl<L: Copy> Shares<L> {
     }
 }
 
-/// 0 where there is nothing to share.
+/// `part / whole`, or 0 if `whole` is 0.
 pub(crate) fn ratio(part: f64, whole: f64) -> f64 {
     if whole > 0.0 { part / whole } else { 0.0 }
 }

@@ -20,7 +20,7 @@ pub struct Sigmoid {
 
 /// The same reflectance by the vertex of its parabola: x = curvature·(λ − shift)² + peak.
 ///
-/// It holds every [`Sigmoid`] but the straight ones, with c0 = 0 and c1 ≠ 0.
+/// It describes every [`Sigmoid`] except those with c0 = 0 and c1 ≠ 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vertex {
     /// c0, 1/nm²; 0 is a flat reflectance.
@@ -31,8 +31,8 @@ pub struct Vertex {
     pub peak: f64,
 }
 
-/// Where the parabola of an exactly white (negative: black) reflectance lies. Larger overflows the
-/// square in single precision beyond 1e19; smaller than 1e8 is no longer exactly 1 in double.
+/// The parabola's value for an exactly white (negative: black) reflectance. Above 1e19 its square
+/// overflows in single precision; below 1e8 the reflectance is not exactly 1 in double.
 const SATURATED: f64 = 1e9;
 
 /// Reflectance from the parabola's value.

@@ -11,19 +11,19 @@ use crate::packed::lookup_table::axis;
 
 /// The colors that the materials of a [`Cube`] have under the contract's light.
 ///
-/// The color of a mixture is the weighted mean of its materials' colors, so the color of any
-/// looked-up material needs no spectrum: it is the tetrahedral interpolation of the nodes' colors,
-/// and exactly that of [`crate::Mixture::color`] with [`crate::Interpolation::Blend`].
+/// The color of a mixture is the weighted mean of its materials' colors. The tetrahedral
+/// interpolation of the nodes' colors is therefore exactly [`crate::Mixture::color`] with
+/// [`crate::Interpolation::Blend`], without any spectrum.
 #[must_use]
 #[derive(Clone, Debug)]
 pub struct ColorTable {
     simd_level: Level,
     resolution: u32,
-    /// X, Y, Z and nothing, `[blue][green][red]`.
+    /// X, Y, Z and 0, `[blue][green][red]`.
     nodes: Vec<[f32; 4]>,
 }
 
-/// Two arrays that should be of one length are not.
+/// Two arrays differ in length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("room for {found} colors, expected {expected}, one for each RGB")]
 pub struct LengthError {
@@ -47,8 +47,8 @@ impl Cube {
 }
 
 impl ColorTable {
-    /// X, Y, Z of the material of each RGB; not-a-number where a component is not in 0..=1.
-    /// Returns how many those are.
+    /// X, Y, Z of the material of each RGB; NaN where a component is not in 0..=1. Returns how many
+    /// colors are outside.
     ///
     /// # Errors
     ///
@@ -68,30 +68,30 @@ impl ColorTable {
     fn xyz_in_groups<S: Simd>(&self, simd: S, rgb: &[[f32; 3]], xyz: &mut [[f32; 3]]) -> usize {
         let (groups, rest) = rgb.as_chunks::<GROUP>();
         let (xyz_groups, xyz_rest) = xyz.as_chunks_mut::<GROUP>();
-        let mut places = Places { nodes: [[0; GROUP]; 4], weights: [[0.0; GROUP]; 4] };
+        let mut corners = CornersOfMany { nodes: [[0; GROUP]; 4], weights: [[0.0; GROUP]; 4] };
         let mut outside = 0;
         for (rgb, xyz) in groups.iter().zip(xyz_groups) {
-            outside += self.group(simd, &mut places, rgb, xyz);
+            outside += self.group(simd, &mut corners, rgb, xyz);
         }
         let mut last = ([[0.0; 3]; GROUP], [[0.0; 3]; GROUP]);
         last.0[..rest.len()].copy_from_slice(rest);
-        outside += self.group(simd, &mut places, &last.0, &mut last.1);
+        outside += self.group(simd, &mut corners, &last.0, &mut last.1);
         xyz_rest.copy_from_slice(&last.1[..rest.len()]);
         outside
     }
 
-    /// First all places in the table, in vectors, then all colors: the loads of one color need not
+    /// First finds the nodes of all colors, in vectors, then mixes: the loads of one color need not
     /// wait for the arithmetic of the next. Returns how many colors are outside.
     #[inline(always)]
     fn group<S: Simd>(
         &self,
         simd: S,
-        places: &mut Places,
+        corners: &mut CornersOfMany,
         rgb: &[[f32; 3]; GROUP],
         xyz: &mut [[f32; 3]; GROUP],
     ) -> usize {
-        let outside = places.find(simd, self.resolution, &channels(rgb));
-        self.mix(simd, places, xyz);
+        let outside = corners.find(simd, self.resolution, &channels(rgb));
+        self.mix(simd, corners, xyz);
         let mut count = 0;
         if outside != 0 {
             for i in (0..GROUP).filter(|i| outside >> i & 1 == 1) {
@@ -102,27 +102,27 @@ impl ColorTable {
         count
     }
 
-    /// The weighted means of the nodes' colors. Each is written with the nothing that follows it,
-    /// which the next one covers; the last one is not.
+    /// The weighted means of the nodes' colors. All but the last are written as four numbers; the
+    /// next color overwrites the fourth.
     #[inline(always)]
-    fn mix<S: Simd>(&self, simd: S, places: &Places, xyz: &mut [[f32; 3]; GROUP]) {
+    fn mix<S: Simd>(&self, simd: S, corners: &CornersOfMany, xyz: &mut [[f32; 3]; GROUP]) {
         let flat = xyz.as_flattened_mut();
         for i in 0..GROUP - 1 {
-            self.mean(simd, places, i).store_slice(&mut flat[3 * i..3 * i + 4]);
+            self.mean(simd, corners, i).store_slice(&mut flat[3 * i..3 * i + 4]);
         }
-        let [x, y, z, _]: [f32; 4] = self.mean(simd, places, GROUP - 1).into();
+        let [x, y, z, _]: [f32; 4] = self.mean(simd, corners, GROUP - 1).into();
         xyz[GROUP - 1] = [x, y, z];
     }
 
     #[inline(always)]
-    fn mean<S: Simd>(&self, simd: S, places: &Places, i: usize) -> f32x4<S> {
+    fn mean<S: Simd>(&self, simd: S, corners: &CornersOfMany, i: usize) -> f32x4<S> {
         let mut sum = f32x4::splat(simd, 0.0);
         for k in 0..4 {
             let color = f32x4::load_array_ref(
                 simd,
-                &self.nodes[places.nodes[k][i].cast_unsigned() as usize],
+                &self.nodes[corners.nodes[k][i].cast_unsigned() as usize],
             );
-            let part = color * places.weights[k][i];
+            let part = color * corners.weights[k][i];
             // Not `mul_add`: all processors give the same bits.
             sum = if k == 0 { part } else { sum + part };
         }
@@ -144,14 +144,14 @@ fn channels(rgb: &[[f32; 3]; GROUP]) -> [[f32; GROUP]; 3] {
 
 /// The four nodes around each of [`GROUP`] colors and their weights, `[corner][color]`.
 #[derive(Clone, Copy, Debug)]
-struct Places {
+struct CornersOfMany {
     nodes: [[i32; GROUP]; 4],
     weights: [[f32; GROUP]; 4],
 }
 
-impl Places {
-    /// Finds the corners of the nearest colors of the cube, and those of 0 for what is no number;
-    /// [`crate::packed::lookup_table::Corners`] for many colors. A bit says whether a color is outside.
+impl CornersOfMany {
+    /// [`crate::packed::lookup_table::Corners`] of many colors. Colors outside are clamped, NaN to 0;
+    /// each sets a bit of the result.
     #[inline(always)]
     fn find<S: Simd>(&mut self, simd: S, resolution: u32, rgb: &[[f32; GROUP]; 3]) -> u64 {
         let mut outside = 0;
@@ -201,7 +201,7 @@ impl Places {
 /// all.
 #[inline(always)]
 fn cell<S: Simd>(simd: S, cells: i32, channel: f32x16<S>) -> (i32x16<S>, f32x16<S>, mask32x16<S>) {
-    // Not `max`, which may answer what is no number.
+    // Not `max`, which may return NaN.
     let clamped = channel.simd_gt(0.0).select(channel, f32x16::splat(simd, 0.0)).min(1.0);
     // Single precision will do: between nodes a color changes by no more than 1/cells.
     let position = clamped * single(cells);
@@ -210,15 +210,15 @@ fn cell<S: Simd>(simd: S, cells: i32, channel: f32x16<S>) -> (i32x16<S>, f32x16<
     (below, position - below.to_float::<f32x16<S>>(), clamped.simd_ne(channel))
 }
 
-/// Colors whose places are found before their colors are read: so many that the compiler turns the
-/// parting of channels into a loop of vectors, and so few that no color's loads wait long for those
-/// before it: with 64, unrelated colors take a fifth more time.
+/// Colors whose nodes are found before any is mixed: enough for the compiler to separate channels in
+/// vectors, and few enough to keep loads from waiting. With 64, unrelated colors take a fifth more
+/// time.
 const GROUP: usize = 32;
 
 /// Numbers of the widest vector.
 const VECTOR: usize = 16;
 
-/// A number of cells along an axis, which is far below 2²⁴.
+/// A number of cells along an axis, exactly.
 #[expect(clippy::cast_precision_loss, reason = "it is at most 255")]
 #[inline(always)]
 fn single(count: i32) -> f32 {
@@ -262,7 +262,7 @@ mod tests {
     }
 
     #[test]
-    fn the_widest_vectors_give_the_bits_that_the_plain_ones_give() {
+    fn the_widest_vectors_compute_the_bits_of_the_plain_ones() {
         let model = models().pop().unwrap();
         let mut random = Random::new(5);
         let nodes = (0..125).map(|_| random.node(&model)).collect();
@@ -278,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_outside_has_no_color_and_is_counted() {
+    fn colors_outside_are_nan_and_counted() {
         let nodes = vec![crate::Node::default(); 8];
         let model = crate::Model::Reflectance;
         let cube = Cube::new(Contract::default(), model, FitRecord::default(), 2, nodes).unwrap();

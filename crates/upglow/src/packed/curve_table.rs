@@ -11,7 +11,7 @@ use crate::packed::quantile_table::{BINS, FIRST_NM, QuantileTable};
 use crate::packed::vector::{smaller_of, transposed, whole};
 
 const LAST_NM: f32 = 830.0;
-/// The number before [`BINS`]: the last wavelength is in the last bin. What it misses is 3e-5 of
+/// The number before [`BINS`], so that the last wavelength is in the last bin. The error is 3e-5 of
 /// a step, 1e-6 at most.
 const LAST_PLACE: f32 = f32::next_down(BINS as f32);
 
@@ -20,13 +20,13 @@ const LAST_PLACE: f32 = f32::next_down(BINS as f32);
 /// One wavelength touches one or two cache lines for each kind of curve, whatever the dyes.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct CurveTable {
-    pub(crate) absorption: Curves,
-    pub(crate) emission: Curves,
+    pub(crate) absorption: PairedCurves,
+    pub(crate) emission: PairedCurves,
     pub(crate) absorbing: QuantileTable,
     pub(crate) emitting: QuantileTable,
     /// `[dye]`, the first again after the last.
     dyes: Vec<DyeNumbers>,
-    /// Numbers of a wavelength.
+    /// Numbers per wavelength.
     stride: u32,
 }
 
@@ -34,7 +34,7 @@ pub(crate) struct CurveTable {
 /// first dye again after the last: a pair of neighbors is four numbers in a row. The last
 /// wavelength's are zero, for everything outside the grid.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Curves(Vec<f32>);
+pub(crate) struct PairedCurves(Vec<f32>);
 
 /// What the fast path needs of one dye besides its curves.
 #[derive(Clone, Copy, Debug, Default)]
@@ -76,7 +76,7 @@ impl CurveTable {
                     [values[i], values[i + 1] - values[i]].map(to_single)
                 })
             });
-            Curves(rows.chain(std::iter::repeat_n(0.0, 2 * ring)).collect())
+            PairedCurves(rows.chain(std::iter::repeat_n(0.0, 2 * ring)).collect())
         };
         Self {
             absorption: rows(|dye| &dye.absorption),
@@ -123,15 +123,15 @@ impl CurveTable {
 }
 
 impl Row {
-    /// As the place of four curves at one wavelength.
+    /// The same row four times.
     #[inline(always)]
     pub(crate) fn four_times<S: Simd>(self, simd: S) -> Rows<S> {
         Rows { start: [self.start; 4], fraction: f32x4::splat(simd, self.fraction) }
     }
 }
 
-impl Curves {
-    /// Samples and steps of a dye and of its neighbor. By way of `u32`, whose sums need no check.
+impl PairedCurves {
+    /// Samples and steps of a dye and of its neighbor. Sums of `u32` need no check.
     #[inline(always)]
     fn four(&self, start: u32, dye: u32) -> &[f32] {
         let place = (start + 2 * dye) as usize;

@@ -19,7 +19,7 @@ pub(crate) fn twice_inverse_root8<S: Simd>(simd: S, y: f32x8<S>) -> f32x8<S> {
     g * (-(y * g)).mul_add(g, f32x8::splat(simd, 3.0))
 }
 
-/// The processor's estimate, good to 11 bits at least, or the root itself.
+/// The processor's estimate, exact to at least 11 bits, or the root itself.
 #[inline(always)]
 fn estimate<S: Simd>(simd: S, y: f32x4<S>) -> f32x4<S> {
     #[cfg(target_arch = "x86_64")]

@@ -11,8 +11,8 @@ use crate::packed::vector::{greater_of, smaller_of, with_baseline};
 
 /// A [`Cube`] in single precision, packed so that a look-up touches as few cache lines as it can.
 ///
-/// It answers what [`Cube::lookup`] answers with [`crate::Interpolation::Blend`], within 1e-5, at
-/// a fraction of the time; the colors of whole images come from a [`crate::ColorTable`].
+/// It returns the material of [`Cube::lookup`] with [`crate::Interpolation::Blend`], within 1e-5, in
+/// a fraction of the time. For the colors of whole images use a [`crate::ColorTable`].
 ///
 /// # Examples
 ///
@@ -67,21 +67,14 @@ impl LookupTable {
     ///
     /// # Errors
     ///
-    /// [`LookupError::Outside`] if a component is not a number in 0..=1. Whoever wants the nearest
-    /// color of the cube clamps first.
+    /// [`LookupError::Outside`] if a component is not a number in 0..=1. Clamp first
+    /// for the nearest color of the cube.
     pub fn lookup(&self, rgb: [f32; 3]) -> Result<PackedMixture<'_>, LookupError> {
-        let corners = Corners::around(self.resolution, rgb).ok_or_else(|| outside(rgb))?;
+        let corners = Corners::around(self.resolution, rgb)
+            .ok_or_else(|| LookupError::outside(rgb.map(f64::from)))?;
         let nodes = corners.nodes.map(|node| &self.nodes[node as usize]);
         Ok(with_baseline!(simd => PackedMixture::new(simd, &self.model, corners.weights, nodes)))
     }
-}
-
-#[cold]
-pub(crate) fn outside(rgb: [f32; 3]) -> LookupError {
-    let named = ["red", "green", "blue"].into_iter().zip(rgb);
-    let (channel, value) =
-        named.clone().find(|(_, v)| !(0.0..=1.0).contains(v)).unwrap_or(("red", rgb[0]));
-    LookupError::Outside { channel, value: value.into() }
 }
 
 /// The four nodes of a color's tetrahedron.
@@ -110,8 +103,8 @@ impl Corners {
     }
 
     /// The tetrahedron in the cell whose darkest node is `first`, red first, at `fraction` of the
-    /// way to the brightest. Masks stand for branches: in an image one color does not foretell the
-    /// order of the next one's channels.
+    /// way to the brightest. Masks replace branches, because processors cannot predict the order of
+    /// an image's channels.
     #[inline(always)]
     pub(crate) fn of(resolution: u32, first: [u32; 3], [r, g, b]: [f32; 3]) -> Self {
         let n = resolution;
@@ -144,7 +137,7 @@ impl Corners {
 )]
 #[inline(always)]
 fn whole(position: f64) -> u32 {
-    // By way of a signed number, which processors convert in one instruction.
+    // Through a signed number, which processors convert in one instruction.
     position as i32 as u32
 }
 

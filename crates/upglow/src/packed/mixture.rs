@@ -7,7 +7,7 @@ use upglow_color::rounding::to_single;
 use crate::bispectral::{Bispectral, Sample};
 use crate::material::formula::{Accounting, Mixing, PerLobe};
 use crate::material::model::Model;
-use crate::packed::curve_table::{Curves, DyeNumbers};
+use crate::packed::curve_table::{PairedCurves, DyeNumbers};
 use crate::packed::inverse_root::{twice_inverse_root, twice_inverse_root8};
 use crate::packed::model::PackedModel;
 use crate::packed::node::{PackedBells, PackedDyes, PackedNode, PackedReflectance};
@@ -16,9 +16,9 @@ use crate::packed::vector::{greater_of, load, sum, sums, transposed, whole, with
 
 /// The four materials around a color, mixed by weight: a [`crate::Mixture`] for inner loops.
 ///
-/// Every answer is within 1e-5 of the mixture's at wavelengths from 0 to 10 000 nm; farther out it
-/// is that of the nearer end. None panics, whatever the wavelength. Nothing is allocated, and a
-/// look-up, an evaluation or a draw takes tens of nanoseconds at most.
+/// Every result is within 1e-5 of the mixture's at wavelengths from 0 to 10 000 nm; farther out it
+/// is that of the nearer end. No wavelength panics. Nothing is allocated, and a look-up, an
+/// evaluation or a draw takes tens of nanoseconds at most.
 #[must_use]
 #[derive(Clone, Copy, Debug)]
 pub struct PackedMixture<'t> {
@@ -36,12 +36,11 @@ pub struct PackedMixture<'t> {
     fluorescence: [[f32; 4]; 4],
 }
 
-/// The wavelengths that are told apart, nm: beyond them, parabolas overflow.
+/// Wavelengths are clamped to this, nm: beyond it, parabolas overflow.
 const FARTHEST_NM: f32 = 1e4;
 
-/// The widest instructions of this processor: several wavelengths fill several vectors. What is
-/// called in there must be inlined, or it is compiled for the baseline: closures, and so `map` of an
-/// array, often are not.
+/// Runs code with the widest instructions of this processor. Functions called inside must be
+/// inlined, or they are compiled for the baseline: closures, and so `map` of an array, often are not.
 macro_rules! in_vectors {
     ($mixture:ident, $simd:ident => $answer:expr) => {
         dispatch!($mixture.model.simd_level, $simd => $simd.vectorize(
@@ -76,12 +75,11 @@ impl<'t> PackedMixture<'t> {
         weights: [f32; 4],
         nodes: [&PackedNode; 4],
     ) -> Self {
-        // In vectors: what is written by numbers cannot be read by vectors until it has reached the
-        // cache.
+        // In vectors: a vector load has to wait for preceding stores of single numbers.
         let PackedReflectance { edge_nm, constant, linear, quadratic } =
             transposed(nodes.map(|node| load(simd, &node.reflectance))).into();
         let fluorescence = transposed(nodes.map(|node| load(simd, &node.fluorescence)));
-        // Bells have no dye in common, but nothing asks.
+        // With bells the common dye is meaningless, and never read.
         let PackedDyes { weight, concentration, returned_nm, first } = fluorescence.into();
         Self {
             model,
@@ -128,7 +126,7 @@ impl<'t> PackedMixture<'t> {
     #[inline]
     pub fn reflectance8(&self, lambda_nm: [f32; 8]) -> [f32; 8] {
         let [a, b, c, d, e, f, g, h] = lambda_nm;
-        // In two halves: one load of what was stored in two would have to wait for the cache.
+        // In two halves: one load would have to wait for the two stores.
         let (low, high) = ([a, b, c, d], [e, f, g, h]);
         if self.fluorescent {
             self.fluorescent_eight(&low, &high)
@@ -327,7 +325,7 @@ impl<'t> PackedMixture<'t> {
         }
     }
 
-    /// Where each corner's lobes give it back, 1/nm.
+    /// The density of each corner's emission at `out_nm`, 1/nm.
     #[inline(always)]
     fn emission<S: Simd>(&self, simd: S, mixing: Mixing, out_nm: f32) -> PerLobe<f32x4<S>> {
         let none = f32x4::splat(simd, 0.0);
@@ -346,8 +344,8 @@ impl<'t> PackedMixture<'t> {
         }
     }
 
-    /// What leaves at `out_nm` of light that is 1 at every wavelength, where the lobes' emission is
-    /// `emission`.
+    /// What leaves at `out_nm` under an equal-energy light of unit irradiance, where the lobes'
+    /// emission is `emission`.
     #[inline(always)]
     fn leaving<S: Simd>(
         &self,
@@ -420,7 +418,7 @@ impl<'t> PackedMixture<'t> {
 
     /// The curves of each corner's dye and of its neighbor at one wavelength.
     #[inline(always)]
-    fn pairs<S: Simd>(&self, simd: S, curves: &Curves, lambda_nm: f32) -> [f32x4<S>; 2] {
+    fn pairs<S: Simd>(&self, simd: S, curves: &PairedCurves, lambda_nm: f32) -> [f32x4<S>; 2] {
         let row = self.model.curves.row(simd, lambda_nm);
         match self.common_dye {
             Some(dye) => {

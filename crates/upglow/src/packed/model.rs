@@ -16,7 +16,7 @@ pub(crate) struct PackedModel {
     pub(crate) curves: CurveTable,
     pub(crate) absorption_bells: Bells,
     pub(crate) emission_bells: Bells,
-    /// The vectors that several wavelengths at once are worked on with.
+    /// The vectors for several wavelengths at once.
     pub(crate) simd_level: Level,
 }
 

@@ -66,7 +66,7 @@ packed! {
     PackedDyes {
         /// Share of the second dye, 0..=1.
         weight,
-        /// How much of the light at the absorption's peak is absorbed, 0..=1.
+        /// Share of the light at the absorption's peak that is absorbed, 0..=1.
         concentration,
         /// ∫ returned dλ over all incident wavelengths, nm.
         returned_nm,
@@ -80,7 +80,7 @@ packed! {
     PackedBells {
         /// Wavelength of the emission's peak, nm.
         emission_nm,
-        /// How much of the light at the absorption's peak is absorbed, 0..=1.
+        /// Share of the light at the absorption's peak that is absorbed, 0..=1.
         concentration,
         /// ∫ returned dλ over all incident wavelengths, nm.
         returned_nm,
@@ -89,8 +89,8 @@ packed! {
     }
 }
 
-/// Edges farther than this from all light, nm, are restated around [`CENTER_NM`]: distances from
-/// them would have no digits left.
+/// Edges beyond this, nm, are restated around [`CENTER_NM`]: distances from them lose all digits in
+/// single precision.
 const FARTHEST_EDGE_NM: f64 = 1e5;
 const CENTER_NM: f64 = 550.0;
 
@@ -152,7 +152,7 @@ fn bounded_parabola(edge: Edge) -> PackedReflectance<f64> {
     }
 }
 
-/// The nearest numbers in single precision; 0 for what has none.
+/// The nearest numbers in single precision; 0 if one is not finite.
 fn single(numbers: [f64; 4]) -> [f32; 4] {
     numbers.map(to_single).map(|value| if value.is_finite() { value } else { 0.0 })
 }

@@ -1,4 +1,4 @@
-//! The curves of dyes as densities that wavelengths are drawn from, in single precision.
+//! The curves of dyes as densities for drawing wavelengths, in single precision.
 
 use fearless_simd::Simd;
 use upglow_color::rounding::to_single;
@@ -10,8 +10,8 @@ use crate::packed::vector::{greater_of, smaller_of, whole};
 pub(crate) const FIRST_NM: f32 = 300.0;
 pub(crate) const BINS: usize = Grid::FINE.len() - 1;
 
-/// Where a search starts, for each 1/256 of the area. More take room in the caches; fewer leave
-/// more bins of 1 nm to step over.
+/// Starts of searches, one for each 1/256 of the area. More take cache, fewer leave more bins of
+/// 1 nm to step over.
 const GUIDES: usize = 256;
 
 /// Bins that a search steps over without a branch. Where a curve is high, a bin is wider than a
@@ -85,7 +85,7 @@ const SAMPLES: usize = 2 * (BINS + 1);
 fn solve_trapezoid(low: f32, high: f32, area: f32) -> f32 {
     // The root of low·t + ½(high − low)·t² = area in the form that subtracts nothing.
     let root = greater_of(low * low + 2.0 * area * (high - low), 0.0).sqrt();
-    // Not a number, where the bin is empty, becomes 0.
+    // NaN, of an empty bin, becomes 0.
     greater_of(smaller_of(2.0 * area / (low + root), 1.0), 0.0)
 }
 
@@ -128,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn no_number_leaves_the_range_of_the_curves() {
+    fn every_draw_is_in_the_range_of_the_curves() {
         let empty = Spectrum::new(Grid::FINE, vec![0.0; BINS + 1]).unwrap();
         let set = DyeSet::named("konig8").unwrap();
         let model = DyeModel::new(set, DyeOptions::default()).unwrap();

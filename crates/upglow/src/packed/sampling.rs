@@ -1,5 +1,5 @@
-//! Choosing between what a [`crate::PackedMixture`] carries by reflection and by its lobes, and
-//! drawing from a lobe; the measure is that of the trait [`crate::Bispectral`].
+//! Choosing between the reflection of a [`crate::PackedMixture`] and its lobes, and drawing from a
+//! lobe, with the densities of [`crate::Bispectral`].
 
 use fearless_simd::{Simd, f32x4};
 use upglow_color::rounding::to_single;
@@ -61,7 +61,7 @@ impl<'t> DrawnLobe<'t> {
         let [one, two] = self.model.curves.pair(first);
         let [one, two] = [(1.0 - weight) * area(one), weight * area(two)];
         let target = u * (one + two);
-        // Selected, not branched to: nothing foretells which it is.
+        // Selected without a branch, which could not be predicted.
         let second = target >= one && two > 0.0;
         let (start, share) = if second { (one, two) } else { (0.0, one) };
         (first + u32::from(second), (target - start) / share)
@@ -108,7 +108,7 @@ pub(crate) fn shifted(nm: f32, reradiation_per_nm: f32, throughput: f32) -> Samp
     Sample { nm, throughput, draw: Draw::Fluorescent { per_nm } }
 }
 
-/// What is carried at one wavelength by reflection and by each fluorescent lobe.
+/// The contributions of reflection and of each fluorescent lobe at one wavelength.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shares<V> {
     pub(crate) elastic: f32,
@@ -121,8 +121,8 @@ impl<S: Simd> Shares<f32x4<S>> {
         self.elastic + sum(self.lobes[0] + self.lobes[1])
     }
 
-    /// What `u` in 0..1 falls on, `Some(None)` for the elastic part; `None` where nothing is
-    /// carried.
+    /// The part that `u` in 0..1 chooses, `Some(None)` for the elastic one; `None` if there is no
+    /// light.
     #[inline(always)]
     pub(crate) fn choose(
         &self,
@@ -137,8 +137,8 @@ impl<S: Simd> Shares<f32x4<S>> {
         Some(if rest < 0.0 { None } else { self.choose_lobe(lobes, rest) })
     }
 
-    /// The lobe that `rest` falls on, the last that carries anything for a rest beyond all. Counted
-    /// without a branch: nothing foretells the corner.
+    /// The lobe that `rest` falls on, or the last one that contributes. Counted without branches,
+    /// which could not be predicted.
     #[inline(always)]
     fn choose_lobe(&self, lobes: usize, rest: f32) -> Option<ChosenLobe> {
         let mut chosen = None;
@@ -170,7 +170,7 @@ pub(crate) struct ChosenLobe {
     pub(crate) lobe: usize,
 }
 
-/// 0 where there is nothing to share.
+/// `part / whole`, or 0 if `whole` is 0.
 #[inline(always)]
 pub(crate) fn ratio(part: f32, whole: f32) -> f32 {
     if whole > 0.0 { part / whole } else { 0.0 }
@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn wavelengths_have_the_density_that_is_said() {
+    fn wavelengths_have_the_stated_density() {
         for (seed, model) in (0..).zip(models()) {
             let mut random = Random::new(seed);
             let table = table(model, &mut random);
@@ -261,7 +261,7 @@ mod tests {
     }
 
     #[test]
-    fn no_number_makes_a_sampler_panic() {
+    fn no_input_makes_a_sampler_panic() {
         for (seed, model) in (0..).zip(models()) {
             let mut random = Random::new(seed);
             let table = table(model, &mut random);

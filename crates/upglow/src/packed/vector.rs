@@ -1,11 +1,12 @@
-//! Arithmetic with vectors, and with single numbers where a vector's instruction is the faster one.
+//! Arithmetic with vectors, and with single numbers where vector instructions are faster.
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x4, i32x4};
 
 use crate::material::formula::Number;
 
-/// The processor's instructions that every target has: one wavelength fills one vector.
+/// Runs code with the instructions that every processor of the target has: enough where one vector
+/// holds the four corners at one wavelength.
 macro_rules! with_baseline {
     ($simd:ident => $answer:expr) => {
         fearless_simd::dispatch!(fearless_simd::Level::baseline(), $simd => $answer)
@@ -41,7 +42,7 @@ pub(crate) fn load<S: Simd>(simd: S, corners: &[f32; 4]) -> f32x4<S> {
     f32x4::from_slice(simd, corners)
 }
 
-/// Rows and columns change places.
+/// The transposed matrix.
 #[inline(always)]
 pub(crate) fn transposed<S: Simd>([a, b, c, d]: [f32x4<S>; 4]) -> [f32x4<S>; 4] {
     let (even, odd) = (a.interleave(c), b.interleave(d));
@@ -64,8 +65,8 @@ pub(crate) fn sum<S: Simd>(corners: f32x4<S>) -> f32 {
     (a + b) + (c + d)
 }
 
-/// The whole part of a number that is not negative and below 2³¹. In a vector: what is safe for
-/// all numbers takes a plain conversion four more instructions.
+/// The whole part of a number in 0..2³¹. In a vector: a plain conversion, which is safe for all
+/// numbers, takes four more instructions.
 #[inline(always)]
 pub(crate) fn whole<S: Simd>(simd: S, number: f32) -> u32 {
     let whole: i32x4<S> = f32x4::splat(simd, number).to_int();
