@@ -1,18 +1,18 @@
-//! Why a cube makes no shader.
+//! Why a cube has no shader.
 
-/// Why a cube makes no shader.
+/// Why a cube has no shader.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ShaderError {
-    /// A texture of this many nodes has more rows than drivers take.
+    /// The texture of the nodes would have more rows than drivers support.
     #[error("resolution {found}, expected at most {most}: textures have up to 8192 rows")]
     Resolution {
         /// The cube's nodes along an axis.
         found: usize,
-        /// Most that fit.
+        /// The most nodes that fit.
         most: usize,
     },
-    /// The name cannot stand in a file's name or a line of source text.
+    /// The name is not valid in file names and source text.
     #[error("name {found:?}, expected letters, digits, '.', '-' or '_'")]
     Name {
         /// The name given.

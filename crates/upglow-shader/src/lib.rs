@@ -1,8 +1,7 @@
 //! Cubes for shaders: textures, and functions that look materials up, evaluate and sample them.
 //!
-//! [`Shader::new`] turns a [`upglow::Cube`] into source text in a [`Language`] and the files that
-//! the text reads its numbers from. What the functions are called and mean, and how to load the
-//! files, is in `docs/shaders.md`.
+//! [`Shader::new`] turns a [`upglow::Cube`] into source text in a [`Language`] and the files with its
+//! numbers. `docs/shaders.md` describes the functions and how to load the files.
 //!
 //! # Examples
 //!

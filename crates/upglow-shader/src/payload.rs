@@ -25,7 +25,7 @@ pub(crate) fn payload(resolution: usize, nodes: &Texture, curves: Option<&Textur
     bytes
 }
 
-/// Tells the textures of one cube from those of another: FNV-1a of their bytes, 64 bits.
+/// FNV-1a of the textures' bytes, 64 bits: tells the textures of one cube from another's.
 pub(crate) fn checksum(nodes: &Texture, curves: Option<&Texture>) -> u64 {
     const START: u64 = 0xcbf2_9ce4_8422_2325;
     const PRIME: u64 = 0x0100_0000_01b3;

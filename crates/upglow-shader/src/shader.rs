@@ -14,33 +14,33 @@ use crate::textures::{BINS, Texture, curves, nodes};
 use crate::tiff::tiff;
 use crate::translation::translate;
 
-/// A cube for a shader: source text, and the files that it reads its numbers from.
+/// A cube for a shader: source text, and the files with its numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shader {
-    /// The functions, in the language asked for. Every name begins with `upglow_`, `Upglow` or
+    /// The functions, in the requested language. Every name begins with `upglow_`, `Upglow` or
     /// `UPGLOW_`.
     pub source: String,
     /// The files to keep beside the source: one of both textures, or for OSL one of each.
     pub payload: Vec<PayloadFile>,
 }
 
-/// A file that a shader's numbers are in; `docs/shaders.md` describes it.
+/// A file with a shader's numbers; `docs/shaders.md` describes it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PayloadFile {
     /// The file's name, without a folder: `name.textures`, or `name.nodes.tif` and
     /// `name.curves.tif` for OSL.
     pub name: String,
-    /// What is in it.
+    /// Its content.
     pub bytes: Vec<u8>,
 }
 
-/// Wavelengths beyond are those of the end, nm: farther out, parabolas overflow.
+/// Wavelengths are clamped to this, nm: beyond it, parabolas overflow.
 const FARTHEST_NM: f32 = 1e4;
-/// The greatest number below 1 of those that drivers with one bit less than single precision tell
-/// from it. A draw of 1 itself could fall beyond the last wavelength that carries anything.
+/// The greatest number below 1 for drivers with one bit less than single precision. A draw of 1
+/// itself could fall beyond the last wavelength with a density above 0.
 const BELOW_ONE: f32 = 1.0 - f32::EPSILON;
-/// Smallest divisor: below what any area or density is that something is drawn from, above what
-/// drivers flush to zero.
+/// Smallest divisor: below every area or density that wavelengths are drawn from, above what drivers
+/// flush to zero.
 const TINY: f32 = 1e-30;
 /// Halvings that find one bin among all.
 const HALVINGS: u32 = BINS.ilog2() + 1;
@@ -92,7 +92,7 @@ fn payload_files(
     files
 }
 
-/// What made the text, from what, and how to bind it.
+/// The comment at the top: what made the text, from what, and how to bind it.
 fn heading(cube: &Cube, language: Language, payload: &[PayloadFile], checksum: u64) -> String {
     let contract = cube.contract();
     let names: Vec<&str> = payload.iter().map(|file| file.name.as_str()).collect();
@@ -142,7 +142,7 @@ fn binding(language: Language, has_curves: bool) -> String {
     }
 }
 
-/// The numbers of this cube that stand in the text, in the templates' dialect.
+/// The constants of this cube, in the templates' dialect.
 fn constants(cube: &Cube) -> String {
     let mut text = String::new();
     let mut number = |name: &str, kind: &str, value: &str| {
@@ -190,7 +190,7 @@ fn steps_nm(bells: &AnalyticModel) -> [f32; 2] {
     [to_single(emission * widths), to_single(emission)]
 }
 
-/// The number with as many digits as lead back to it, and never without a point.
+/// The shortest digits that read back as the same number, always with a decimal point.
 fn float(value: f32) -> String {
     format!("{value:?}")
 }
@@ -258,13 +258,13 @@ float4 upglow_{texel}(int column, int row) {{
     )
 }
 
-/// Vulkan can have textures without a sampler.
+/// Vulkan has textures without a sampler.
 const GLSL_SAMPLER: &str = "#ifndef UPGLOW_SAMPLER
 #define UPGLOW_SAMPLER sampler2D
 #endif
 ";
 
-/// OSL has no four numbers in one, and reads textures between 0 and 1.
+/// OSL has no type of four numbers, and reads textures by coordinates in 0..1.
 const OSL_TEXEL: &str = r#"struct UpglowTexel {
     float x;
     float y;

@@ -24,7 +24,7 @@ pub(crate) fn functions(model: &Model, language: Language) -> String {
     pieces.join("\n")
 }
 
-/// What lines of the templates can be kept for.
+/// The conditions of template lines that hold for a model.
 fn traits(model: &Model) -> Vec<&'static str> {
     let accounting = |accounting: Accounting| match accounting {
         Accounting::Energy => "energy",
@@ -103,7 +103,7 @@ mod tests {
         }
     }
 
-    /// Words that one of the languages keeps for itself and that would do as names.
+    /// Reserved words of the languages that could be taken as names.
     const RESERVED: &str = "active and asm auto binding case cast centroid channel class closure \
         coherent column_major common compile constant continuing discard do double emit enum \
         export extern external filter final fixed flat get goto group half handle highp hvec impl \

@@ -1,4 +1,4 @@
-//! A cube's numbers as two textures of four floats a texel.
+//! A cube's numbers as two textures of four floats per texel.
 
 use upglow::{Cube, DyeModel};
 use upglow_color::rounding::to_single;
@@ -6,8 +6,8 @@ use upglow_color::{Grid, Spectrum};
 
 use crate::error::ShaderError;
 
-/// Most texels along an axis that every driver takes: `WebGPU`'s own limit, and above what OpenGL ES
-/// and Direct3D 10 ask for.
+/// The most texels along an axis, which is `WebGPU`'s default limit. OpenGL ES and Direct3D 10
+/// require less.
 pub(crate) const MOST_TEXELS: usize = 8192;
 
 /// Bins of 1 nm in the range of the curves.
@@ -16,7 +16,7 @@ pub(crate) const BINS: usize = Grid::FINE.len() - 1;
 /// Rows of the texture of curves: one for each sample, and one for the dyes' numbers.
 const CURVE_ROWS: usize = BINS + 2;
 
-/// Four floats a texel, `[row][column]`.
+/// Four floats per texel, `[row][column]`.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Texture {
     pub(crate) width: usize,
@@ -35,7 +35,7 @@ impl Texture {
 ///
 /// # Errors
 ///
-/// [`ShaderError::Resolution`] if the texture would have more rows than drivers take.
+/// [`ShaderError::Resolution`] if the texture would have more rows than drivers support.
 pub(crate) fn nodes(cube: &Cube) -> Result<Texture, ShaderError> {
     let n = cube.resolution();
     if n * n > MOST_TEXELS {
@@ -102,7 +102,7 @@ fn running_sum(terms: impl Iterator<Item = f64>) -> Vec<f64> {
     std::iter::once(0.0).chain(sums).collect()
 }
 
-/// The nearest numbers in single precision; 0 for what has none.
+/// The nearest numbers in single precision; 0 if one is not finite.
 fn single(texel: [f64; 4]) -> [f32; 4] {
     texel.map(to_single).map(|value| if value.is_finite() { value } else { 0.0 })
 }
@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn the_ring_has_a_pair_of_columns_a_dye_and_a_row_of_numbers() {
+    fn the_ring_has_a_pair_of_columns_per_dye_and_a_row_of_numbers() {
         let dyes = DyeModel::new(DyeSet::named("konig8").unwrap(), DyeOptions::default()).unwrap();
         let texture = curves(&dyes);
         assert_eq!([texture.width, texture.height()], [16, 532]);

@@ -1,4 +1,4 @@
-//! Textures as TIFF files, for languages that read nothing else.
+//! Textures as TIFF files, for OSL, which reads no other layout.
 
 use crate::textures::Texture;
 
@@ -8,7 +8,7 @@ const LONG: u16 = 4;
 /// The file: a header of 8 bytes, the directory, the bits of a sample and its format four times
 /// each, the texels in one strip.
 ///
-/// The fourth channel is marked as data that is no opacity, so that readers multiply nothing by it.
+/// The fourth channel is marked as data other than opacity, so that readers do not multiply by it.
 ///
 /// # Source
 ///

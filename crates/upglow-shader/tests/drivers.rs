@@ -159,7 +159,7 @@ impl Answer {
     }
 }
 
-/// Colors and wavelengths that are none, each among ordinary numbers.
+/// Invalid colors and wavelengths, each among ordinary numbers.
 fn odd_queries() -> Vec<Query> {
     let plain = Query { rgb: [0.3, 0.4, 0.8], in_nm: 450.0, out_nm: 550.0, u: [0.9, 0.5] };
     let odd = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -1.0, 0.0, 1.0, 2.0, 1e4, 1e38, 1e-40];

@@ -20,7 +20,7 @@ WIDTH = 5 * COLUMNS
 
 
 def write_tiff(path, texels):
-    """A TIFF file of four floats a texel, `[row][column][channel]`."""
+    """A TIFF file of four floats per texel, `[row][column][channel]`."""
     height, width, _ = texels.shape
     at = 8 + 2 + 12 * 11 + 4
     entries = [
