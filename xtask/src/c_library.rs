@@ -18,12 +18,16 @@ const FOLDER: &str = "bindings/c";
 
 /// What `cargo xtask check` does about the library.
 pub(crate) const STEPS: [Step; 6] = [
-    Step { name: "c-header", about: "upglow.h is what the sources make", run: header::check },
+    Step { name: "c-header", about: "upglow.h is generated from the sources", run: header::check },
     Step { name: "c-library", about: "the C library builds and installs", run: installs },
-    Step { name: "c-programs", about: "its examples and tests run", run: programs::run },
-    Step { name: "c-valgrind", about: "and touch no foreign memory", run: programs::run_valgrind },
-    Step { name: "c-pkg-config", about: "and build by pkg-config", run: programs::run_pkg_config },
-    Step { name: "c-cmake", about: "and build by CMake", run: programs::run_cmake },
+    Step { name: "c-programs", about: "its examples and tests pass", run: programs::run },
+    Step { name: "c-valgrind", about: "the same under valgrind", run: programs::run_valgrind },
+    Step {
+        name: "c-pkg-config",
+        about: "its example builds with pkg-config",
+        run: programs::run_pkg_config,
+    },
+    Step { name: "c-cmake", about: "its examples build with CMake", run: programs::run_cmake },
 ];
 
 /// Where the checks install the library and build their programs.

@@ -1,4 +1,4 @@
-//! The gate: every step, in order, the fast ones first. No other file knows all of them.
+//! `cargo xtask check`: every step, in order, the fast ones first.
 
 use std::path::Path;
 use std::process::Command;
@@ -16,16 +16,16 @@ const STEPS: [Step; 9] = [
     Step { name: "format", about: "cargo fmt changes nothing", run: format },
     Step { name: "tables", about: "the generated tables are those of tables/", run: tables::check },
     Step { name: "layers", about: "no crate uses one above it", run: layers::check },
-    Step { name: "clippy", about: "clippy and the compiler warn of nothing", run: clippy },
-    Step { name: "docs", about: "rustdoc warns of nothing", run: docs },
+    Step { name: "clippy", about: "no warnings of clippy and the compiler", run: clippy },
+    Step { name: "docs", about: "no warnings of rustdoc", run: docs },
     Step {
         name: "python",
-        about: "what tests read files with, in target/python",
+        about: "a Python environment for tests, in target/python",
         run: python_for_tests,
     },
     Step { name: "tests", about: "the tests that are not slow", run: quick_tests },
     Step { name: "guide", about: "the examples of docs/guide.md work", run: guide::check },
-    Step { name: "licenses", about: "licenses and sources of what we depend on", run: licenses },
+    Step { name: "licenses", about: "licenses and sources of the dependencies", run: licenses },
 ];
 
 const SLOW_STEP: Step =
@@ -37,7 +37,7 @@ fn all_steps() -> Vec<Step> {
     STEPS.into_iter().chain(words::STEPS).chain(bindings).chain([SLOW_STEP]).collect()
 }
 
-/// What the command line asks for.
+/// The steps and options that the command line names.
 #[derive(Clone, Debug, Default)]
 struct Plan {
     steps: Vec<Step>,
@@ -87,7 +87,7 @@ impl Plan {
     }
 }
 
-/// Runs what the arguments of `cargo xtask check` ask for; whether all is well.
+/// Runs `cargo xtask check` with these arguments; whether every step passed.
 pub(crate) fn run(root: &Path, args: &[&str]) -> Result<bool, StepError> {
     let plan = Plan::new(args)?;
     if plan.list {
@@ -149,7 +149,7 @@ fn docs(root: &Path) -> Result<(), StepError> {
     finish(command)
 }
 
-/// Tests that need it skip themselves, by name, where there is none.
+/// Tests that need it skip themselves, by name, where it is absent.
 fn python_for_tests(root: &Path) -> Result<(), StepError> {
     python::prepare(root).map(|_| ())
 }
@@ -178,7 +178,7 @@ fn licenses(root: &Path) -> Result<(), StepError> {
     if output_of(cargo(root, "deny --version")).is_err() {
         return Err(StepError::Skipped("cargo-deny not installed"));
     }
-    // The offline check reads the manifests of every platform's crates; a build fetches only ours.
+    // The offline check reads the manifests of every platform's crates; a build fetches only its own.
     finish(cargo(root, "fetch --locked"))?;
     finish(cargo(root, "deny --offline check licenses bans sources"))
 }

@@ -18,7 +18,7 @@ const LANGUAGES: [(&str, &str, &[&str]); 4] = [
     ("shaders", "//", &["wgsl", "glsl", "hlsl", "osl"]),
 ];
 
-/// Folders whose files are no part of the product, wherever they lie.
+/// Folders whose files are not part of the product.
 const LEFT_OUT_FOLDERS: [&str; 3] = ["tests", "benches", "examples"];
 
 /// What is generated, below the workspace's root.
@@ -78,7 +78,7 @@ fn has_ending(path: &Path, endings: &[&str]) -> bool {
     path.extension().is_some_and(|ending| endings.iter().any(|known| ending == *known))
 }
 
-/// Lines of code in one file, formatted as the check asks for.
+/// Lines of code in one file, which must be formatted by rustfmt.
 fn source_lines(text: &str, comment: &str) -> usize {
     let mut lines = text.lines();
     let mut count = 0;

@@ -12,7 +12,7 @@ const VARIABLE: &str = "DRJIT_LIBLLVM_PATH";
 const OLDEST: u32 = 16;
 
 /// What the tests were written with. Of others the nearest is taken: a release that is much newer may
-/// lack functions that Dr.Jit asks for.
+/// lack functions that Dr.Jit calls.
 const TESTED: u32 = 19;
 
 /// Where systems keep their libraries.

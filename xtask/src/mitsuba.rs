@@ -15,12 +15,8 @@ const PLUGINS_VARIABLE: &str = "UPGLOW_MITSUBA_PLUGINS";
 /// What `cargo xtask check` does about them, after the Python package is installed.
 pub(crate) const STEPS: [Step; 3] = [
     Step { name: "mitsuba-plugins", about: "the plugins for Mitsuba 3 build", run: build },
-    Step { name: "mitsuba-scalar", about: "their tests, scalar variants", run: test_scalar },
-    Step {
-        name: "mitsuba-traced",
-        about: "their tests, variants traced by LLVM",
-        run: test_traced,
-    },
+    Step { name: "mitsuba-scalar", about: "the plugins' tests, scalar variants", run: test_scalar },
+    Step { name: "mitsuba-traced", about: "the plugins' tests, LLVM variants", run: test_traced },
 ];
 
 /// The same on their own.

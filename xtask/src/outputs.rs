@@ -1,4 +1,4 @@
-//! `cargo xtask outputs`: every product of a program at a small size, to compare two programs with.
+//! `cargo xtask outputs`: every product of a program at a small size, to compare two programs.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -10,20 +10,21 @@ use sha2::{Digest as _, Sha256};
 
 use crate::step::StepError;
 
-/// Below here lie the texts for people, which may differ.
+/// The folder of texts for people, which may differ.
 const TEXTS: &str = "texts";
 
-/// Key of the seconds a run took, in JSON documents; the number after it is no product.
+/// Key of a run's duration in JSON documents, which differs from run to run.
 const TIME_KEY: &str = "\"time_s\":";
 
 /// Exit status of a program that refuses its options.
 const BAD_USAGE: i32 = 2;
 
-/// What is run, and how what it prints is kept.
+/// What is run, and how its output is kept.
 const SCRIPT: &str = include_str!("../outputs.txt");
 
 /// Makes the outputs of `program` in `folder`, prints their sums, and compares them with those in
-/// `against`; whether no product differs. Figures and the report on the paper come from `study`.
+/// `against`; returns whether all products are the same. Figures and the report on the paper come
+/// from `study`.
 pub(crate) fn run(
     program: &Path,
     folder: &Path,

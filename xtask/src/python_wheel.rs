@@ -76,11 +76,11 @@ fn python_in(folder: &Path, interpreter: &Path) -> Command {
 }
 
 /// pytest's last lines: those about skipped tests, where there are any, and the counts.
-pub(crate) fn summary(told: &str) -> &str {
-    let told = told.trim_end();
-    let start = told.find("== short test summary").or_else(|| told.rfind('\n'));
-    let start = start.and_then(|at| told[at..].find('\n').map(|end| at + end + 1));
-    &told[start.unwrap_or_default()..]
+pub(crate) fn summary(printed: &str) -> &str {
+    let printed = printed.trim_end();
+    let start = printed.find("== short test summary").or_else(|| printed.rfind('\n'));
+    let start = start.and_then(|at| printed[at..].find('\n').map(|end| at + end + 1));
+    &printed[start.unwrap_or_default()..]
 }
 
 #[cfg(test)]
@@ -88,11 +88,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_pytest_says_last_is_told() {
+    fn the_last_lines_of_pytest_are_printed() {
         assert_eq!(summary("..  [100%]\n2 passed in 0.1s\n"), "2 passed in 0.1s");
         let skips = "SKIPPED [1] tests/test_x.py:4: no program\n1 passed, 1 skipped in 0.1s";
-        let told = format!(".s  [100%]\n=== short test summary info ===\n{skips}\n");
-        assert_eq!(summary(&told), skips);
+        let printed = format!(".s  [100%]\n=== short test summary info ===\n{skips}\n");
+        assert_eq!(summary(&printed), skips);
         assert_eq!(summary(""), "");
     }
 

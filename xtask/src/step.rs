@@ -20,12 +20,12 @@ pub(crate) struct Step {
     pub(crate) run: fn(&Path) -> Result<(), StepError>,
 }
 
-/// Why a step, or another command of ours, did not do its work.
+/// Why a step or command failed or was skipped.
 #[derive(Debug)]
 pub(crate) enum StepError {
     /// The machine lacks what it needs; the check goes on.
     Skipped(&'static str),
-    /// The command line asks for what there is not.
+    /// The command line is wrong.
     Usage(String),
     /// A command could not be started.
     Start { command: String, source: io::Error },
@@ -35,12 +35,12 @@ pub(crate) enum StepError {
     Json { command: String, source: serde_json::Error },
     /// A file could not be read or written.
     File { path: PathBuf, source: io::Error },
-    /// What a check of our own found, one line each.
+    /// Problems found by a check, one line each.
     Found(Vec<String>),
 }
 
 impl StepError {
-    /// What to make of the failure to read or write a file.
+    /// Turns the failure to read or write a file into this error.
     pub(crate) fn file(path: &Path) -> impl Fn(io::Error) -> Self + '_ {
         |source| Self::File { path: path.to_owned(), source }
     }
@@ -50,7 +50,7 @@ impl StepError {
         Self::Found(vec![problem.into()])
     }
 
-    /// Nothing, where there is no problem.
+    /// Success if there are no problems.
     pub(crate) fn none_of(problems: Vec<String>) -> Result<(), Self> {
         if problems.is_empty() { Ok(()) } else { Err(Self::Found(problems)) }
     }

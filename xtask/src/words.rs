@@ -1,4 +1,4 @@
-//! The words of texts: phrases that `words.txt` lists must not appear, and the spelling is American.
+//! The words of texts: no phrase listed in `words.txt` appears, and the spelling is American.
 
 use std::path::Path;
 use std::process::Command;
@@ -9,7 +9,7 @@ use crate::step::{Step, StepError, finish, read, tracked_files};
 /// Phrases and suggestions, separated by `=>`.
 const PHRASES: &str = include_str!("../words.txt");
 
-/// What holds other people's words, phrases on purpose, or data.
+/// Files with other people's words, with the phrases themselves, or with data.
 const LEFT_OUT: [&str; 6] = [
     "LICENSE",
     "tables/",
@@ -29,7 +29,7 @@ fn check(root: &Path) -> Result<(), StepError> {
     let mut problems = Vec::new();
     for path in tracked_files(root)? {
         let is_left_out = LEFT_OUT.iter().any(|left_out| path.starts_with(left_out));
-        // What is not text holds no phrases.
+        // Files that are not text are passed over.
         if let (false, Ok(text)) = (is_left_out, read(&root.join(&path))) {
             problems.extend(found(&path, &text));
         }
@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn parts_of_words_are_no_phrases() {
+    fn parts_of_words_are_not_phrases() {
         assert!(contains("a hence b", "hence") && contains("hence", "hence"));
         assert!(!contains("henceforth whence", "hence"));
     }
