@@ -153,12 +153,7 @@ fn folder_failure(folder: &Path, error: DyeSetError) -> Failure {
             Failure::system(&path, &cause, "a folder of CSV files")
         }
         DyeSetError::Csv { path, cause } => Failure::file(&path, cause),
-        DyeSetError::QuantumYield { path, dye, found } => Failure::file(
-            &path,
-            format!(
-                "quantum yield {found:?} of {dye}, expected a number from 0 to 1, or an empty cell"
-            ),
-        ),
+        DyeSetError::List { path, problem } => Failure::file(&path, problem),
         error => Failure::file(folder, error),
     }
 }

@@ -55,23 +55,13 @@ pub enum DyeSetError {
         /// What was found, and what is expected.
         problem: String,
     },
-    /// A quantum yield in the folder's list is not a fraction.
-    #[error("{}: quantum yield {found:?} of {dye}, expected a number from 0 to 1 or nothing", path.display())]
-    QuantumYield {
-        /// The list's path.
-        path: PathBuf,
-        /// The dye.
-        dye: String,
-        /// The cell.
-        found: String,
-    },
-    /// The folder's list lacks the column of files or that of quantum yields.
-    #[error("{}: header {found:?}, expected columns file and quantum_yield", path.display())]
-    Columns {
+    /// The folder's list of quantum yields lacks a column, or holds one that is not in 0..=1.
+    #[error("{}: {problem}", path.display())]
+    List {
         /// The list.
         path: PathBuf,
-        /// Its first line.
-        found: String,
+        /// What was found, and what is expected.
+        problem: String,
     },
     /// No dye, or too many.
     #[error("{found} dyes, expected 1 to {MOST_DYES}")]
@@ -194,8 +184,9 @@ fn read_yields(path: &Path) -> Result<Vec<(String, f64)>, DyeSetError> {
     let header = lines.next().unwrap_or_default();
     let column = |name: &str| header.iter().position(|cell| cell == name);
     let (Some(file), Some(quantum_yield)) = (column("file"), column("quantum_yield")) else {
-        let found = text.lines().next().unwrap_or_default().into();
-        return Err(DyeSetError::Columns { path: path.into(), found });
+        let found = text.lines().next().unwrap_or_default();
+        let problem = format!("header {found:?}, expected columns file and quantum_yield");
+        return Err(DyeSetError::List { path: path.into(), problem });
     };
     let stated = lines.filter_map(|cells| {
         let cell = cells.get(quantum_yield)?.trim();
@@ -204,7 +195,11 @@ fn read_yields(path: &Path) -> Result<Vec<(String, f64)>, DyeSetError> {
     stated
         .map(|(dye, found)| match found.parse() {
             Ok(q) if (0.0..=1.0).contains(&q) => Ok((dye, q)),
-            _ => Err(DyeSetError::QuantumYield { path: path.into(), dye, found }),
+            _ => {
+                let expected = "expected a number from 0 to 1, or an empty cell";
+                let problem = format!("quantum yield {found:?} of {dye}, {expected}");
+                Err(DyeSetError::List { path: path.into(), problem })
+            }
         })
         .collect()
 }
