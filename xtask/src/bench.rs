@@ -1,4 +1,4 @@
-//! `cargo xtask bench`: runs the benches and writes what they say into docs/PERFORMANCE.md.
+//! `cargo xtask bench`: runs the benches and writes their medians into docs/PERFORMANCE.md.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -8,7 +8,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use crate::step::{StepError, cargo, output_of};
 
-/// Lines of the table: what is measured, by which bench, how fast it should be, what others take.
+/// Lines of the table: what is measured, by which bench, the goal, and the time of other programs.
 const GOALS: &str = include_str!("../goals.csv");
 
 /// A bench and its median, as printed; per item where the bench counts items.

@@ -11,7 +11,7 @@ const VARIABLE: &str = "DRJIT_LIBLLVM_PATH";
 /// Of older ones, 15 ends the process at the smaller of two numbers.
 const OLDEST: u32 = 16;
 
-/// What the tests were written with. Of others the nearest is taken: a release that is much newer may
+/// The version that the tests were written with. The nearest one is taken: a much newer release may
 /// lack functions that Dr.Jit calls.
 const TESTED: u32 = 19;
 

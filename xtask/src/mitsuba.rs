@@ -9,7 +9,7 @@ use crate::{c_library, llvm, python, python_wheel};
 /// Where their sources are, below the workspace's root.
 const FOLDER: &str = "bindings/mitsuba";
 
-/// Tests load the plugins from the folder of this name, and skip by name where there is none.
+/// Tests load the plugins from the folder of this name, and skip by name where it is absent.
 const PLUGINS_VARIABLE: &str = "UPGLOW_MITSUBA_PLUGINS";
 
 /// What `cargo xtask check` does about them, after the Python package is installed.
@@ -60,7 +60,7 @@ fn test_traced(root: &Path) -> Result<(), StepError> {
     test(root, "traced")
 }
 
-/// Runs the tests that carry a mark, or do not, and prints what pytest says of them.
+/// Runs the tests that have a mark, or those that do not, and prints pytest's summary.
 fn test(root: &Path, marked: &str) -> Result<(), StepError> {
     c_library::need(&["cmake"])?;
     let interpreter = python::prepare_with_mitsuba(root)?;

@@ -116,7 +116,7 @@ fn make(program: &Path, folder: &Path, study: &Path) -> Result<(), StepError> {
 /// One run of a program.
 #[derive(Clone, Debug, PartialEq)]
 struct Run {
-    /// How what it prints is kept, as `outputs.txt` says it.
+    /// How its output is kept, by the words of `outputs.txt`.
     kind: String,
     /// Under which name.
     name: String,
@@ -177,7 +177,7 @@ struct Outputs<'a> {
 }
 
 impl Outputs<'_> {
-    /// An observer, a light and two dyes of our own.
+    /// An observer, a light and two dyes as CSV files.
     fn write_inputs(&self) -> Result<(), StepError> {
         let rows = |columns: &dyn Fn(usize) -> String| -> String {
             (300..=830).step_by(5).map(|nm| format!("{nm},{}\n", columns(nm))).collect()

@@ -6,7 +6,7 @@ use std::process::{Command, Stdio};
 
 use crate::step::{StepError, read};
 
-/// Tests run this interpreter, and skip by name where there is none.
+/// Tests run this interpreter, and skip by name where it is absent.
 pub(crate) const VARIABLE: &str = "UPGLOW_PYTHON";
 
 /// The lists of packages that tests need, with pinned versions.
@@ -17,7 +17,7 @@ const REQUIREMENTS: [&str; 4] = [
     "crates/upglow-shader/tests/drivers/requirements.txt",
 ];
 
-/// The list of what the plugins for Mitsuba need, on top of the others: not every platform has it.
+/// The packages that the plugins for Mitsuba need in addition; not every platform has them.
 const MITSUBA_REQUIREMENTS: &str = "bindings/mitsuba/requirements.txt";
 
 /// Makes `target/python` hold every package that tests need; the interpreter. What is there already

@@ -10,7 +10,7 @@ use crate::step::{Step, StepError, cargo, finish, output_of, release_bin_dir};
 /// Where the package lies.
 const PACKAGE: &str = "bindings/python";
 
-/// Tests compare the package with this program, and skip by name where there is none.
+/// Tests compare the package with this program, and skip by name where it is absent.
 const PROGRAM_VARIABLE: &str = "UPGLOW_PROGRAM";
 
 /// What `cargo xtask check` does about the package.

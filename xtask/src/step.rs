@@ -94,7 +94,7 @@ pub(crate) fn finish(command: Command) -> Result<(), StepError> {
 /// Runs a command with its output passed on.
 pub(crate) fn finish_aloud(mut command: Command) -> Result<(), StepError> {
     let shown = shown(&command);
-    // A failed flush loses a line of ours and nothing else.
+    // A failed flush loses one printed line at most.
     io::stdout().flush().ok();
     match command.status() {
         Ok(status) if status.success() => Ok(()),
@@ -145,7 +145,7 @@ pub(crate) fn tracked_files(root: &Path) -> Result<Vec<String>, StepError> {
     Ok(paths.map(str::to_owned).collect())
 }
 
-/// What `cargo metadata` says of our crates.
+/// The output of `cargo metadata` for the crates of the workspace.
 pub(crate) fn metadata(root: &Path) -> Result<serde_json::Value, StepError> {
     json_of(cargo(root, "metadata --format-version 1 --no-deps --offline"))
 }

@@ -23,7 +23,7 @@ struct Generated {
     text: String,
 }
 
-/// Every generated file, as the CSV files under `root` ask for it now.
+/// Every generated file, from the CSV files under `root`.
 fn generate(root: &Path) -> Result<Vec<Generated>, StepError> {
     let read = |name| Table::read(&root.join("tables"), name);
     let dyes = Dyes::from_tables(&read("dyes")?, &read("dye_provenance")?)?;
@@ -37,7 +37,7 @@ fn generate(root: &Path) -> Result<Vec<Generated>, StepError> {
     ])
 }
 
-/// Writes every generated file under `root`, and says how many changed.
+/// Writes every generated file under `root`, and prints how many changed.
 pub(crate) fn write(root: &Path) -> Result<(), StepError> {
     let files = generate(root)?;
     let stale: Vec<&Generated> = files.iter().filter(|file| !is_fresh(root, file)).collect();
@@ -49,7 +49,7 @@ pub(crate) fn write(root: &Path) -> Result<(), StepError> {
     Ok(())
 }
 
-/// The committed files are those that the CSV files ask for.
+/// Whether the committed files are those generated from the CSV files.
 pub(crate) fn check(root: &Path) -> Result<(), StepError> {
     let files = generate(root)?;
     let stale = files.iter().filter(|file| !is_fresh(root, file));

@@ -1,4 +1,4 @@
-//! Shaders on a real driver: what they answer is what the library answers.
+//! Shaders on a real driver: their results are the library's.
 
 #![expect(clippy::unwrap_used, reason = "a test fails where its files cannot be made")]
 
@@ -104,7 +104,7 @@ struct Query {
     u: [f32; 2],
 }
 
-/// What a shader answers, in the order of `drivers/main.*`.
+/// The results of a shader, in the order of `drivers/main.*`.
 #[derive(Clone, Copy, Debug)]
 struct Answer {
     reflectance: f64,
@@ -270,7 +270,7 @@ fn the_examples_of_the_documentation_compile() {
     }
 }
 
-/// Compiles a language's example behind the text of each cube, or says what that lacks.
+/// Compiles a language's example after the text of each cube, or names what is missing for that.
 fn compile_examples(language: Language, cubes: &[Cube], folder: &Path) -> Result<(), String> {
     for cube in cubes {
         let (mut compiler, before) = fragment_compiler(language).ok_or("no compiler")?;
@@ -352,7 +352,7 @@ fn read_answers(folder: &Path) -> Vec<Answer> {
 /// What a shader was asked and answered.
 type Answered = (Vec<Query>, Vec<Answer>);
 
-/// The answers of each cube's shader, or why there are none.
+/// The results of each cube's shader, or why they are missing.
 fn answers(language: Language, cubes: &[Cube]) -> Result<Vec<Answered>, String> {
     let (packages, script) = match language {
         Language::Osl => ("numpy, bpy", "run_osl.py"),
@@ -505,7 +505,7 @@ fn assert_drawn_from(draws: &[Drawn], pdf_at: impl Fn(f64) -> f64, elastic: f64)
     assert!(chi_square < limit, "chi-square {chi_square} of {freedom} degrees of freedom");
 }
 
-/// Whether an answer is one of a material, whatever was asked.
+/// Whether a result is one that a material can have, for any query.
 fn assert_sound(query: Query, answer: &Answer) {
     let shares =
         [answer.reflectance, answer.albedo, answer.incident_elastic, answer.outgoing_elastic];

@@ -17,7 +17,7 @@ use interpolation::{Interpolation, tetrahedron};
 
 /// Materials for every node of a regular grid over linear RGB 0..=1, in single precision.
 ///
-/// Nodes are `[blue][green][red]`; node i of an axis of n stands for i / (n − 1).
+/// Nodes are `[blue][green][red]`; node i of n on an axis has the value i / (n − 1).
 ///
 /// # Examples
 ///
@@ -207,7 +207,7 @@ impl Cube {
         [index / (n * n), index / n % n, index % n]
     }
 
-    /// The color that node number `index` stands for.
+    /// The color of node number `index`.
     pub fn node_rgb(&self, index: usize) -> LinearRgb {
         let [blue, green, red] = self.coordinates(index);
         let last = (self.resolution - 1) as f64;

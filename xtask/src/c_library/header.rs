@@ -10,7 +10,7 @@ fn path(root: &Path) -> PathBuf {
     root.join(FOLDER).join("include").join("upglow.h")
 }
 
-/// Writes the header, and says whether it changed.
+/// Writes the header, and prints whether it changed.
 pub(crate) fn write(root: &Path) -> Result<(), StepError> {
     let (path, text) = (path(root), generate(root)?);
     let is_fresh = fs::read_to_string(&path).is_ok_and(|found| found == text);

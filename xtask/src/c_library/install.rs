@@ -23,7 +23,7 @@ pub(crate) struct Installed {
 #[derive(Clone, Debug, PartialEq)]
 struct SharedNames {
     file: String,
-    /// What programs ask for when they start.
+    /// The name that programs load when they start.
     soname: String,
     /// What the linker looks for.
     link: String,
@@ -32,7 +32,7 @@ struct SharedNames {
 }
 
 impl SharedNames {
-    /// `None` on systems whose libraries nobody tried here.
+    /// `None` on systems that were not tested.
     fn of_this_system() -> Option<Self> {
         let series = series();
         match std::env::consts::OS {

@@ -189,7 +189,7 @@ impl CoefficientTable {
         Sigmoid { c0, c1, c2 }
     }
 
-    /// Between which of evenly spaced nodes a fraction lies, and how far from the first.
+    /// The evenly spaced node at or below a fraction, and the distance from it in steps.
     fn along(&self, fraction: f64) -> (usize, f64) {
         let position = fraction * (self.resolution() - 1) as f64;
         let below = whole(position).min(self.resolution() - 2);
@@ -219,7 +219,7 @@ impl CoefficientTable {
     ///
     /// # Errors
     ///
-    /// [`CoefficientTableError`] says what was found and what was expected.
+    /// [`CoefficientTableError`] if the bytes are not such a file.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, CoefficientTableError> {
         let body = bytes.strip_prefix(MAGIC).ok_or_else(|| CoefficientTableError::Magic {
             found: String::from_utf8_lossy(&bytes[..bytes.len().min(4)]).into_owned(),

@@ -16,7 +16,7 @@ pub enum CubeFileError {
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's error.
         cause: io::Error,
     },
     /// The file is not a cube that this program reads.

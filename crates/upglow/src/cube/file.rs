@@ -158,7 +158,7 @@ impl Cube {
     ///
     /// # Errors
     ///
-    /// [`ReadCubeError`] says what was found and what was expected.
+    /// [`ReadCubeError`] if the content is not a cube; no content panics.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, ReadCubeError> {
         let (_, metadata) = SafeTensors::read_metadata(bytes).map_err(ReadCubeError::Container)?;
         let json = metadata.metadata().as_ref().and_then(|entries| entries.get(ENTRY));

@@ -1,4 +1,4 @@
-//! What a cube's file says about itself, as JSON.
+//! The JSON header of a cube's file.
 
 use serde::{Deserialize, Serialize};
 use upglow_color::{

@@ -152,7 +152,7 @@ impl Distribution {
 /// The t in 0..=1 at which a density that goes from `low` to `high` over 0..=1 has the area
 /// `area`.
 fn solve_trapezoid(low: f64, high: f64, area: f64) -> f64 {
-    // The root of low·t + ½(high − low)·t² = area in the form that subtracts nothing.
+    // The root of low·t + ½(high − low)·t² = area in the form without cancellation.
     let root = (low * low + 2.0 * area * (high - low)).max(0.0).sqrt();
     if low + root > 0.0 { (2.0 * area / (low + root)).clamp(0.0, 1.0) } else { 0.0 }
 }

@@ -34,7 +34,7 @@ pub enum DyeSetError {
     Read {
         /// The file or folder.
         path: PathBuf,
-        /// What the system said.
+        /// The system's error.
         cause: std::io::Error,
     },
     /// A file is not a dye.

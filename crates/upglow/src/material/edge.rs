@@ -56,14 +56,14 @@ impl Sigmoid {
     /// The form by the steepest point; of the two, the one nearer to `near_nm`.
     pub fn to_edge(self, near_nm: f64) -> Edge {
         let Self { c0, c1, c2 } = self;
-        // Around `near_nm` the coefficients are small and nothing cancels.
+        // Around `near_nm` the coefficients are small, without cancellation.
         let (k, b, x) = (c0, c1 + 2.0 * c0 * near_nm, c2 + near_nm * (c1 + c0 * near_nm));
         let discriminant = b * b - 4.0 * k * x;
         let r = (9.0 / 16.0 * discriminant * discriminant + 5.0 * k * k).sqrt();
         if r == 0.0 {
             return Edge { edge_nm: near_nm, level: x, slope_per_nm: 0.0 };
         }
-        // Two forms of one P: each subtracts nothing for its sign of the discriminant.
+        // Two forms of one P: each is free of cancellation for its sign of the discriminant.
         let level = if discriminant > 0.0 {
             k / (r + 0.75 * discriminant)
         } else {

@@ -80,7 +80,7 @@ impl Vertex {
             return None;
         }
         let root = (9.0 * p * p + 5.0).sqrt().copysign(c0);
-        // Two forms of one P: each adds numbers of one sign.
+        // Two forms of one P: each is free of cancellation for its sign of p·c0.
         let steepest = if p * c0 >= 0.0 { (3.0 * p + root) / 5.0 } else { 1.0 / (root - 3.0 * p) };
         let width_nm = ((steepest - p) / c0).sqrt();
         let slope_per_nm = c0 * width_nm / (1.0 + steepest * steepest).powf(1.5);

@@ -33,7 +33,7 @@ enum Spectra<'m> {
 }
 
 impl Fluorescence {
-    /// The one or two lobes of this fluorescence under `model`; none where nothing fluoresces.
+    /// The lobes of this fluorescence under `model`: none, one or two.
     pub(crate) fn lobes(self, model: &Model) -> impl Iterator<Item = Lobe<'_>> + use<'_> {
         let [first, second] = match (self, model) {
             (Self::Dyes { first, weight, concentration }, Model::Dyes(model)) => {

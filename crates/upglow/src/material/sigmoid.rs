@@ -112,7 +112,7 @@ fn steepest_slope(c0: f64, d: f64) -> f64 {
     if r == 0.0 {
         return 0.0;
     }
-    // Two forms of one P: each subtracts nothing for its sign of d.
+    // Two forms of one P: each is free of cancellation for its sign of d.
     let p = if d > 0.0 { c0 / (r + 0.75 * d) } else { (r - 0.75 * d) / (5.0 * c0) };
     ((0.5 * d + r) / 5.0).sqrt() / (1.0 + p * p).powf(1.5)
 }

@@ -15,9 +15,9 @@ const LAST_NM: f32 = 830.0;
 /// a step, 1e-6 at most.
 const LAST_PLACE: f32 = f32::next_down(BINS as f32);
 
-/// The curves of a ring of dyes on [`Grid::FINE`] in single precision; empty where there are none.
+/// The curves of a ring of dyes on [`Grid::FINE`] in single precision; empty without dyes.
 ///
-/// One wavelength touches one or two cache lines for each kind of curve, whatever the dyes.
+/// One wavelength touches one or two cache lines for each kind of curve, for any dyes.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct CurveTable {
     pub(crate) absorption: PairedCurves,

@@ -25,7 +25,7 @@ pub(crate) struct QuantileTable {
     /// The bin that g / [`GUIDES`] of the area is in, `[dye][g]`.
     guides: Vec<u16>,
     /// The area up to each sample and the density there (1/nm), `[dye][sample][area, density]`. The
-    /// last area is infinite: nothing lies beyond.
+    /// last area is infinite, so that every search ends there.
     samples: Vec<f32>,
 }
 
@@ -56,8 +56,8 @@ impl QuantileTable {
         }));
     }
 
-    /// The wavelength, nm, below which `u` of the area of a dye's curve lies; `u` in 0..=1, the ends
-    /// for those outside.
+    /// The wavelength, nm, below which `u` of the area of a dye's curve lies; `u` is clamped to
+    /// 0..=1.
     #[inline(always)]
     pub(crate) fn quantile<S: Simd>(&self, simd: S, dye: u32, u: f32) -> f32 {
         let u = greater_of(smaller_of(u, 1.0), 0.0);
@@ -83,7 +83,7 @@ const SAMPLES: usize = 2 * (BINS + 1);
 /// `area`.
 #[inline(always)]
 fn solve_trapezoid(low: f32, high: f32, area: f32) -> f32 {
-    // The root of low·t + ½(high − low)·t² = area in the form that subtracts nothing.
+    // The root of low·t + ½(high − low)·t² = area in the form without cancellation.
     let root = greater_of(low * low + 2.0 * area * (high - low), 0.0).sqrt();
     // NaN, of an empty bin, becomes 0.
     greater_of(smaller_of(2.0 * area / (low + root), 1.0), 0.0)
