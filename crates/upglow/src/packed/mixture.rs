@@ -7,7 +7,7 @@ use upglow_color::rounding::to_single;
 use crate::bispectral::{Bispectral, Sample};
 use crate::material::formula::{Accounting, Mixing, PerLobe};
 use crate::material::model::Model;
-use crate::packed::curve_table::{PairedCurves, DyeNumbers};
+use crate::packed::curve_table::{DyeNumbers, PairedCurves};
 use crate::packed::inverse_root::{twice_inverse_root, twice_inverse_root8};
 use crate::packed::model::PackedModel;
 use crate::packed::node::{PackedBells, PackedDyes, PackedNode, PackedReflectance};
@@ -50,8 +50,8 @@ macro_rules! in_vectors {
     };
 }
 
-/// [`with_baseline`] with the mixing as a constant, so that each mixing is compiled by itself: chosen
-/// where it is used, it costs up to 7 % of an answer.
+/// [`with_baseline`] with the mixing as a constant, so that each mixing is compiled separately.
+/// Chosen inside, it costs up to 7 % of an evaluation.
 macro_rules! with_rules {
     ($mixture:ident, $simd:ident, $mixing:ident => $answer:expr) => {
         with_baseline!($simd => match $mixture.model.mixing {

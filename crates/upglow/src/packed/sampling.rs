@@ -67,8 +67,8 @@ impl<'t> DrawnLobe<'t> {
         (first + u32::from(second), (target - start) / share)
     }
 
-    /// A wavelength drawn from the lobe in double precision: apart, so that other draws need not save
-    /// registers for it.
+    /// A wavelength drawn from the lobe in double precision: a function of its own, so that other
+    /// draws need not save registers for it.
     #[inline(never)]
     fn in_double<S: Simd>(&self, simd: S, draw: fn(&Lobe<'t>, f64) -> f64, u: f32) -> f32 {
         to_single(self.lobe(simd).map_or(0.0, |lobe| draw(&lobe, u.into())))
