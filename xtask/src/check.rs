@@ -76,8 +76,7 @@ impl Plan {
                 }
             }
         }
-        // The texts are not yet free of the phrases of words.txt.
-        let is_usual = |step: &Step| step.name != "words" && (slow || step.name != SLOW_STEP.name);
+        let is_usual = |step: &Step| slow || step.name != SLOW_STEP.name;
         let is_asked_for = |&(place, step): &(usize, &Step)| match only[..] {
             [] => place >= from && (plan.list || is_usual(step)),
             _ => only.contains(&place),
