@@ -43,9 +43,8 @@ fn planes() -> Vec<Vec<f32>> {
 }
 
 fn write(path: &std::path::Path, planes: &[Vec<f32>], compression: Compression) -> u64 {
-    let description = ExrDescription::new([SIDE, SIDE], NAMES)
-        .with_sample(Sample::Half)
-        .with_compression(compression);
+    let mut description = ExrDescription::new([SIDE, SIDE], NAMES).with_sample(Sample::Half);
+    description.compression = compression;
     let mut writer = ExrWriter::create(path, description).expect("a folder to write in");
     for top in (0..SIDE).step_by(BAND) {
         let range = top * SIDE..(top + BAND) * SIDE;
@@ -73,8 +72,8 @@ fn read_rgb_of_2048(bencher: Bencher<'_, '_>, compression: Compression) {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("x.exr");
     let planes = planes();
-    let description =
-        ExrDescription::new([SIDE, SIDE], ["R", "G", "B"]).with_compression(compression);
+    let mut description = ExrDescription::new([SIDE, SIDE], ["R", "G", "B"]);
+    description.compression = compression;
     let mut writer = ExrWriter::create(&path, description).expect("a folder to write in");
     writer.write_band(&[&planes[1], &planes[2], &planes[4]]).expect("room on the disk");
     writer.finish().expect("all rows");

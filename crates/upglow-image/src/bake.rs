@@ -1,4 +1,4 @@
-//! Turns pictures into spectral files.
+//! Bakes pictures into files of materials, spectra or light.
 
 mod attributes;
 mod compact;
@@ -31,57 +31,57 @@ use crate::picture::error::PictureError;
 use crate::picture::linear::{Assumed, LinearPicture};
 use crate::spectral::error::FormError;
 
-/// What becomes of each texel.
+/// What a baked file stores for each texel.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Form {
-    /// The parameters of one material, moved until it shows the color, where one material can.
+    /// The parameters of one material, adjusted until it matches the color if one material can.
     Material,
-    /// The parameters of one material, interpolated and no more.
+    /// The parameters of one material, interpolated only.
     InterpolatedMaterial,
     /// Reflectance in bands, and re-radiation between them.
     Spectral {
-        /// The wavelengths at the middle of the bands.
+        /// Centers of the bands.
         grid: Grid,
-        /// Maps of the dyes instead of a channel for each pair of bands.
+        /// Whether maps of the dyes replace the channels for pairs of bands.
         compact: bool,
     },
     /// Color under a light, in the cube's RGB space.
     Radiance {
-        /// The light; it brings as much power as the contract's.
+        /// The light, which is scaled to the power of the contract's light.
         light: Illuminant,
     },
 }
 
 impl Form {
-    /// The form of a baked file, as it says itself: material, spectral or radiance.
+    /// The form that a baked file states: material, spectral or radiance.
     pub fn stated(reader: &ExrReader) -> Option<&str> {
         reader.attributes().get(attributes::FORM)?.as_text()
     }
 }
 
-/// How pictures are read and files are written.
+/// How pictures are read and baked files are written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BakeOptions {
-    /// What is taken for granted of pictures that do not say it.
+    /// Space and encoding of pictures that do not state them.
     pub assumed: Assumed,
-    /// What to do with texels outside the cube; `None` refuses them.
+    /// How to change texels outside the cube; `None` refuses them.
     pub repair: Option<Repair>,
-    /// Half or float. The compact form of lobes is always float: rounded positions on the ring
-    /// of dyes are other colors.
+    /// Half or float. The compact form of lobes is always float, because rounded positions on the ring
+    /// of dyes would be other colors.
     pub sample: Sample,
 }
 
-/// What was baked.
+/// Facts about a baked file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Baked {
     /// Width and height of the picture.
     pub size: [usize; 2],
     /// Channels of the file.
     pub channels: usize,
-    /// Texels that were repaired.
+    /// Texels that a repair changed.
     pub repaired: u64,
-    /// Bytes of the file.
+    /// Size of the file, bytes.
     pub bytes: u64,
 }
 
@@ -89,10 +89,10 @@ pub struct Baked {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum BakeError {
-    /// The picture cannot be read, or nobody says what its numbers mean.
+    /// The picture cannot be read, or its RGB space or encoding is unknown.
     #[error(transparent)]
     Picture(#[from] PictureError),
-    /// The cube records a slope limit that no fit can keep.
+    /// The cube records an invalid slope limit.
     #[error(transparent)]
     Options(#[from] FitOptionsError),
     /// The cube's model has no compact form.
@@ -104,7 +104,7 @@ pub enum BakeError {
     /// The cube's dyes have no compact form.
     #[error(transparent)]
     Compact(#[from] FormError),
-    /// A texel has no material.
+    /// A texel is outside the cube.
     #[error("texel {x},{y}{}", and_others(*.others))]
     Texel {
         /// Column, from 0 at the left.
@@ -137,27 +137,27 @@ pub struct Baker<'c> {
     cube: &'c Cube,
     options: BakeOptions,
     maker: Box<dyn Maker + 'c>,
-    /// Names, in the order in which planes are filled; alpha comes after.
+    /// Names of the channels in the order of the planes, without alpha, which comes last.
     channels: Vec<String>,
 }
 
-/// Memory for the channels of a band, bytes: wide pictures of many channels are cut into fewer
-/// rows. More would fill a small machine, less would leave cores waiting at the end of each band.
+/// Most bytes of the channels of a band, which limits the rows of wide pictures with many channels.
+/// More would fill the memory of small machines, less would leave cores idle at the end of each band.
 const BAND_BYTES: usize = 96 << 20;
-/// Rows of a band at most: enough to keep every core busy.
+/// Most rows of a band: enough to keep all cores busy.
 const BAND_ROWS: usize = 64;
 
 impl<'c> Baker<'c> {
-    /// Prepares a form.
+    /// Prepares baking into `form`.
     ///
     /// # Errors
     ///
-    /// [`BakeError`] if the cube has no such form.
+    /// [`BakeError`] if the cube does not support the form.
     pub fn new(cube: &'c Cube, form: Form, options: BakeOptions) -> Result<Self, BakeError> {
+        let is_polished = form == Form::Material;
         let maker: Box<dyn Maker + 'c> = match (form, cube.model()) {
-            (Form::Material, _) => Box::new(MaterialMaker::new(cube, true, options.sample)?),
-            (Form::InterpolatedMaterial, _) => {
-                Box::new(MaterialMaker::new(cube, false, options.sample)?)
+            (Form::Material | Form::InterpolatedMaterial, _) => {
+                Box::new(MaterialMaker::new(cube, is_polished, options.sample)?)
             }
             (Form::Spectral { grid, compact: false }, _) => {
                 Box::new(SpectralMaker::new(cube, grid))
@@ -175,14 +175,16 @@ impl<'c> Baker<'c> {
     }
 
     /// Bakes the picture at `input` into a file at `output`, on all threads of the current rayon
-    /// pool. The file appears whole or not at all, and its bytes do not depend on the threads.
+    /// pool. The file is replaced only once it is complete, and its bytes do not depend on the number of
+    /// threads.
     ///
-    /// Memory: two bands of at most 96 MiB besides what [`Picture`] takes, and one block of 16
-    /// rows; a spectral file has blocks of one row.
+    /// Memory: that of [`Picture`], two bands of at most 96 MiB, and one block of 16 rows (one row in
+    /// spectral files).
     ///
     /// # Errors
     ///
-    /// [`BakeError`]; `output` is then as it was.
+    /// [`BakeError`] if the picture cannot be read, a texel is outside the cube and not repaired, or the
+    /// file cannot be written. `output` is then unchanged.
     pub fn bake(
         &self,
         input: impl AsRef<Path>,
@@ -201,7 +203,7 @@ impl<'c> Baker<'c> {
         let mut baked = Baked { size, channels: 0, repaired: 0, bytes: 0 };
         picture.for_each_band(self.band_rows(size[0]), "baking", watch, |mut band| {
             match &repairer {
-                Some(repairer) => baked.repaired += repairer.repair(&mut band.rgb).changed,
+                Some(repairer) => baked.repaired += repairer.repair(&mut band.rgb),
                 None => refuse_outside(&band, self.cube)?,
             }
             let planes = self.planes(&band);
@@ -213,14 +215,14 @@ impl<'c> Baker<'c> {
         Ok(baked)
     }
 
-    /// A picture whose rows come in the cube's RGB space.
+    /// A picture that is converted to the cube's RGB space.
     fn open(&self, input: &Path) -> Result<LinearPicture, PictureError> {
         let mut picture = LinearPicture::open(input, &self.options.assumed)?;
         picture.convert_to(self.cube.contract());
         Ok(picture)
     }
 
-    /// What repairs texels outside the cube; one repair must read the whole picture first.
+    /// Prepares a repair; [`Repair::Scale`] reads the whole picture for this.
     fn repairer<'t>(
         &self,
         repair: Repair,
@@ -229,7 +231,7 @@ impl<'c> Baker<'c> {
         watch: &dyn Watch,
     ) -> Result<Repairer<'t>, BakeError> {
         let mut greatest = 0.0_f32;
-        if repair.reads_all_first() {
+        if repair == Repair::Scale {
             self.open(input)?.for_each_band(BAND_ROWS, "measuring", watch, |band| {
                 greatest = greatest.max(greatest_value(&band.rgb));
                 Ok::<_, BakeError>(())
@@ -258,10 +260,9 @@ impl<'c> Baker<'c> {
         let mut planes: Vec<Vec<f32>> = (0..count).into_par_iter().map(of_channel).collect();
         if let Some(values) = &band.alpha {
             if self.maker.is_light() {
-                let associate = |plane: &mut Vec<f32>| {
+                for plane in &mut planes {
                     plane.iter_mut().zip(values).for_each(|(v, a)| *v *= a);
-                };
-                planes.iter_mut().for_each(associate);
+                }
             }
             planes.push(values.clone());
         }
@@ -271,12 +272,13 @@ impl<'c> Baker<'c> {
     fn description(&self, picture: &Picture) -> ExrDescription {
         let alpha = picture.has_alpha().then(|| "A".to_owned());
         let channels = self.channels.iter().cloned().chain(alpha);
-        let mut description = ExrDescription::new(picture.size(), channels);
-        description.sample = self.maker.sample(self.options.sample);
-        description.compression = self.maker.compression();
-        description.attributes = self.maker.attributes();
-        description.windows = picture.windows();
-        description
+        ExrDescription {
+            sample: self.maker.sample(self.options.sample),
+            compression: self.maker.compression(),
+            attributes: self.maker.attributes(),
+            windows: picture.windows(),
+            ..ExrDescription::new(picture.size(), channels)
+        }
     }
 
     fn band_rows(&self, width: usize) -> usize {

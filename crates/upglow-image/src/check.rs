@@ -1,4 +1,4 @@
-//! What a picture asks of materials, before anything is baked.
+//! Checks which materials a picture needs, before anything is baked.
 
 mod cube_match;
 mod display;
@@ -19,19 +19,20 @@ use upglow_color::{Contract, Grid, LinearRgb};
 use upglow_fit::{StandingTable, Stopped, Watch};
 
 use self::display::Display;
-use self::findings::{Candidate, Findings};
+use self::findings::Findings;
 use self::limits::Limits;
 use self::maps::Maps;
+use self::ranking::Candidate;
 use crate::picture::error::PictureError;
 use crate::picture::linear::{Assumed, LinearPicture};
 
 pub use self::cube_match::CubeMatch;
 pub use self::report::{CheckReport, Counts, Flaw, FlawedTexel, WorstTexel};
 
-/// Says of pictures what each texel needs.
+/// Checks for each texel of a picture which kind of material its color needs.
 ///
-/// A picture is read by bands of rows: memory is bounded, for two maps of at most 1024 pixels a side
-/// and a few texels. A report depends neither on the bands nor on the number of threads.
+/// A picture is read by bands of rows, and two maps of at most 1024 pixels per side and a few texels are
+/// kept, so memory is bounded. Reports depend neither on the bands nor on the number of threads.
 ///
 /// # Examples
 ///
@@ -58,17 +59,17 @@ pub use self::report::{CheckReport, Counts, Flaw, FlawedTexel, WorstTexel};
 pub struct Checker<'c> {
     contract: Contract,
     assumed: Assumed,
-    /// A cube and its file.
+    /// A cube and the name of its file.
     cube: Option<(&'c Cube, String)>,
-    /// For each RGB space: what one picture has found out serves the next too.
+    /// The limits of each RGB space so far, for further pictures.
     known: Vec<Limits>,
 }
 
-/// Why a picture is not checked.
+/// Why a picture cannot be checked.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CheckError {
-    /// The picture cannot be read, or nobody says what its numbers mean.
+    /// The picture cannot be read, or its RGB space or encoding is unknown.
     #[error(transparent)]
     Picture(#[from] PictureError),
     /// The cube was built for another contract.
@@ -79,22 +80,21 @@ pub enum CheckError {
     Stopped(#[from] Stopped),
 }
 
-/// Rows that are read at a time: enough to keep every core busy.
+/// Rows that are read at a time: enough to keep all cores busy.
 const BAND_ROWS: usize = 64;
 
 impl<'c> Checker<'c> {
-    /// Greatest number of worst texels in a report.
+    /// Most texels in [`CheckReport::worst`].
     pub const WORST: usize = 10;
 
-    /// Checks each picture in its own RGB space, under the light, the observer and the adaptation of
-    /// `contract`.
+    /// Checks each picture in its own RGB space, under the light, observer and adaptation of `contract`.
     #[must_use]
     pub fn new(contract: Contract, assumed: Assumed) -> Self {
         Self { contract, assumed, cube: None, known: Vec::new() }
     }
 
-    /// Checks pictures in the RGB space of `cube`, and how well its mixtures show each texel. Reports
-    /// call it `file`.
+    /// Checks pictures in the RGB space of `cube`, and also how well its mixtures match each texel.
+    /// Reports name it `file`.
     ///
     /// # Errors
     ///
@@ -108,11 +108,11 @@ impl<'c> Checker<'c> {
         Ok(self)
     }
 
-    /// What the picture at `input` asks of materials, found on all threads of the current rayon pool.
+    /// Checks the picture at `input` on all threads of the current rayon pool.
     ///
     /// # Errors
     ///
-    /// [`CheckError`] if it cannot be read or the watcher stops.
+    /// [`CheckError`] if the picture cannot be read or the watcher stops.
     pub fn check(
         &mut self,
         input: impl AsRef<Path>,
@@ -133,7 +133,7 @@ impl<'c> Checker<'c> {
         Ok(pass.finish(input.display().to_string(), cube_file))
     }
 
-    /// The number of the limits for a picture: in the cube's RGB space, or in the picture's own.
+    /// The index of the limits for a picture: in the cube's RGB space, or in the picture's own.
     fn limits(&mut self, picture: &LinearPicture) -> usize {
         let mut contract = self.contract.clone();
         if self.cube.is_none() {
@@ -148,7 +148,7 @@ impl<'c> Checker<'c> {
     }
 }
 
-/// A picture whose rows pass once, from top to bottom.
+/// The check of one picture, whose rows are added once, from top to bottom.
 struct Pass<'a> {
     limits: &'a Limits,
     size: [usize; 2],
@@ -161,11 +161,9 @@ impl<'a> Pass<'a> {
         Self { limits, size, maps: Maps::new(size), findings: Findings::default() }
     }
 
-    /// Takes whole rows of linear RGB in the contract's space.
+    /// Adds whole rows of linear RGB in the contract's space.
     fn add(&mut self, first_row: usize, rgb: &[[f32; 3]]) {
-        let limits = self.limits;
-        let found = self.maps.tiles(first_row, rgb).map(|tile| tile.check(limits));
-        let found = found.reduce(Findings::default, Findings::with);
+        let found = self.maps.check(first_row, rgb, self.limits);
         self.findings = std::mem::take(&mut self.findings).with(found);
     }
 
@@ -188,16 +186,16 @@ impl<'a> Pass<'a> {
     }
 }
 
-/// Measures the candidates, which were ranked by estimates, and keeps the worst.
+/// Measures the candidates, which were ranked by estimates, and returns the worst.
 fn worst(table: &StandingTable, display: &Display, findings: &Findings) -> Vec<WorstTexel> {
-    let candidates = findings.worst.found();
+    let candidates = &findings.worst.found;
     let mut all: Vec<_> = candidates
         .par_iter()
         .map(|&Candidate { x, y, rgb, .. }| {
             let color = LinearRgb(rgb.map(f64::from));
             let standing = table.standing(color);
-            let asked = table.colorimetry().xyz_from_rgb(color);
-            let swatches = [asked, standing.reflectance.color, standing.fluorescence.color]
+            let own = table.colorimetry().xyz_from_rgb(color);
+            let swatches = [own, standing.reflectance.color, standing.fluorescence.color]
                 .map(|xyz| display.srgb(xyz));
             WorstTexel { x, y, rgb, standing, swatches }
         })
@@ -219,7 +217,7 @@ mod tests {
     const WIDTH: usize = 61;
     const HEIGHT: usize = 47;
 
-    /// All there may be in a picture: gradients, flat runs, bright, negative and broken texels.
+    /// A picture with gradients, flat runs, bright and negative texels, and NaN and infinities.
     fn picture() -> Vec<[f32; 3]> {
         let texel = |i: usize| {
             let (x, y) = ((i % WIDTH) as f32 / 60.0, (i / WIDTH) as f32 / 46.0);
@@ -259,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn each_texel_counts_for_what_it_needs() {
+    fn each_texel_is_counted_by_the_material_it_needs() {
         let rgb = picture();
         let found = report(&limits(), &rgb, 7).counts;
         let finite = rgb.iter().filter(|t| t.iter().all(|v| v.is_finite()));
@@ -323,7 +321,7 @@ mod tests {
         rgb[2600] = [0.9, 0.0, 0.9];
         pass.add(0, &rgb);
         let found = pass.finish("wide.exr".into(), None);
-        assert_eq!((found.heat.width(), found.heat.height()), (1000, 1));
+        assert_eq!((found.heat.width, found.heat.height), (1000, 1));
         let color = |column: usize| found.heat.pixels[column];
         let [gray, broken, green, magenta] = [color(1), color(0), color(501), color(520)];
         assert!(gray[0] == gray[1] && gray[1] == gray[2]);
@@ -354,7 +352,7 @@ mod tests {
     }
 
     #[test]
-    fn a_cube_that_has_the_picture_as_nodes_shows_it_within_its_own_difference() {
+    fn a_cube_with_the_picture_as_nodes_matches_it_within_the_stored_difference() {
         use upglow::{DyeModel, DyeOptions, DyeSet, Model};
         use upglow_fit::{FitOptions, Unwatched, build_cube};
         let model = DyeModel::new(DyeSet::named("konig8").unwrap(), DyeOptions::default()).unwrap();

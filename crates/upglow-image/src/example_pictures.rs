@@ -1,13 +1,13 @@
-//! Pictures to try the program with, by formula: no free picture has colors this wide.
+//! Example pictures, defined by formulas because no freely licensed picture has such a wide gamut.
 
 use upglow_color::rounding::to_single;
 
 /// A picture in linear ACEScg, each channel 0..=1.
 #[derive(Clone, Copy, Debug)]
 pub struct ExamplePicture {
-    /// The name of its file, without suffix.
+    /// The name of its file, without extension.
     pub name: &'static str,
-    /// What it shows, and why.
+    /// A description.
     pub about: &'static str,
     /// Width and height in texels.
     pub size: [usize; 2],
@@ -15,11 +15,11 @@ pub struct ExamplePicture {
 }
 
 impl ExamplePicture {
-    /// All of them.
+    /// The three pictures.
     pub const ALL: [Self; 3] = [
         Self {
             name: "pool",
-            about: "tiles of a swimming pool, with a ring of ACEScg (0.9, 0, 0.9) that no reflectance shows",
+            about: "tiles of a swimming pool, with a ring of ACEScg (0.9, 0, 0.9), which no reflectance matches",
             size: [512, 512],
             color: pool,
         },
@@ -37,7 +37,7 @@ impl ExamplePicture {
         },
     ];
 
-    /// The color of a texel, from the upper left.
+    /// The color of the texel in column `x` of row `y`, counted from the top left.
     pub fn texel(&self, [x, y]: [usize; 2]) -> [f32; 3] {
         let at = [(x as f64 + 0.5) / self.size[0] as f64, (y as f64 + 0.5) / self.size[1] as f64];
         (self.color)(at).map(to_single)
@@ -49,7 +49,7 @@ impl ExamplePicture {
     }
 }
 
-/// Square tiles of a few blues with light grout; a ring lies over them.
+/// Blue square tiles with light grout, and a magenta ring on top.
 fn pool([u, v]: [f64; 2]) -> [f64; 3] {
     const TILES: f64 = 16.0;
     const MAGENTA: [f64; 3] = [0.9, 0.0, 0.9];
@@ -64,7 +64,7 @@ fn pool([u, v]: [f64; 2]) -> [f64; 3] {
     mix(MAGENTA, water, step(0.055, 0.06, off))
 }
 
-/// Rows of hues that lose their gray from left to right, the last row gray.
+/// Columns of hues whose saturation increases from top to bottom, and a last row of grays.
 fn chart([u, v]: [f64; 2]) -> [f64; 3] {
     const COLUMNS: f64 = 12.0;
     const ROWS: f64 = 8.0;
@@ -81,7 +81,7 @@ fn chart([u, v]: [f64; 2]) -> [f64; 3] {
     mix([0.5; 3], hue(column / COLUMNS).map(|c| 0.9 * c), saturation)
 }
 
-/// From a deep blue zenith over magenta to orange, hills, and lamps of every color.
+/// A sky from deep blue over magenta to orange, with hills and lamps of all hues.
 fn dusk([u, v]: [f64; 2]) -> [f64; 3] {
     const LAMPS: f64 = 9.0;
     let glow = (1.0 - ((u - 0.7) / 0.9).powi(2)).max(0.0);
@@ -96,7 +96,7 @@ fn dusk([u, v]: [f64; 2]) -> [f64; 3] {
     mix(light, scene, step(0.06, 0.4, (x * x + y * y).sqrt()))
 }
 
-/// Around the corners of the RGB cube, from red by way of green, for 0..1.
+/// A saturated hue for 0..1: red, green, blue and back to red.
 fn hue(turn: f64) -> [f64; 3] {
     let channel = |center: f64| {
         let off = (turn - center).abs();
@@ -106,7 +106,7 @@ fn hue(turn: f64) -> [f64; 3] {
     [channel(0.0), channel(1.0 / 3.0), channel(2.0 / 3.0)]
 }
 
-/// From 0 to 1 between two numbers, smoothly.
+/// A smooth step from 0 at `from` to 1 at `to`.
 fn step(from: f64, to: f64, at: f64) -> f64 {
     let t = ((at - from) / (to - from)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
@@ -116,13 +116,13 @@ fn mix(a: [f64; 3], b: [f64; 3], share: f64) -> [f64; 3] {
     [0, 1, 2].map(|k| a[k] + share * (b[k] - a[k]))
 }
 
-/// Between −1 and 1, once up and down for each whole number, of parabolas.
+/// A wave between −1 and 1 of period 1, made of parabolas.
 fn wave(turn: f64) -> f64 {
     let t = 2.0 * turn.rem_euclid(1.0) - 1.0;
     4.0 * t * (t.abs() - 1.0)
 }
 
-/// A number in 0..1 for each pair of whole ones, without pattern to the eye.
+/// A number in 0..1 for each pair of integers, without a visible pattern.
 fn scatter([x, y]: [f64; 2]) -> f64 {
     (0.5 + 0.5 * wave(0.618_034 * x + 0.754_878 * y * (x + 1.0) + 0.31 * y)).clamp(0.0, 1.0)
 }

@@ -1,4 +1,4 @@
-//! OpenEXR images: headers, blocks of pixels, a reader by regions and a writer by bands of rows.
+//! OpenEXR images: headers, blocks, a reader of regions and a writer of bands of rows.
 
 pub(crate) mod attribute;
 mod blocks;

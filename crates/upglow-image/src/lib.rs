@@ -1,16 +1,16 @@
-//! Pictures in, spectral files out: whole textures by bands of rows, in bounded memory.
+//! Bakes pictures into spectral files and checks them, by bands of rows and in bounded memory.
 //!
 //! - pictures: [`Picture`] reads OpenEXR, TIFF and PNG by [`Band`]s; [`Encoding`] makes them linear
-//! - before baking: [`Checker`] says what each texel needs
-//! - baking: [`Baker`] writes materials, spectra or colors under a light, by [`Form`]
-//! - baked files: [`MaterialPicture`] and [`SpectralPicture`] read texels, [`Lint`] finds faults
+//! - before baking: [`Checker`] determines which kind of material each texel needs
+//! - baking: [`Baker`] writes materials, spectra or colors under a light, in a [`Form`]
+//! - baked files: [`MaterialPicture`] and [`SpectralPicture`] read texels, [`Lint`] checks files
 //! - OpenEXR: [`ExrWriter`] writes any channels by bands, [`ExrReader`] reads any region
 //!
 //! `docs/spectral-exr.md` and `docs/material-exr.md` describe the files.
 //!
-//! A file that is written appears whole or not at all, and the same pixels give the same bytes for
-//! any number of threads. No content of a file panics: each error is one line that says what was
-//! found and what was expected.
+//! Files appear under their names only when they are complete, and their bytes do not depend on the
+//! number of threads. Invalid files never cause a panic: they are refused with an error of one line that
+//! states what was found and what was expected.
 //!
 //! # Examples
 //!
@@ -33,7 +33,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Out of scope: finding materials, colors under a light, and any other format.
+//! The materials come from cubes of the crate `upglow`.
 
 mod bake;
 mod check;

@@ -1,4 +1,4 @@
-//! Pictures of three formats, read by bands of rows.
+//! Reads pictures of three formats by bands of rows.
 
 pub(crate) mod band;
 pub(crate) mod chromaticities;
@@ -27,19 +27,17 @@ use self::source::{Alpha, Facts, Source};
 use self::tiff::TiffPicture;
 use crate::exr::header::Window;
 
-/// A picture that is opened for reading from top to bottom.
+/// Reads a picture from top to bottom.
 ///
-/// OpenEXR (rows or tiles, every compression but HTJ2K and deep data; R, G, B or Y, with or without A,
-/// also inside the only layer or part), TIFF (8 and 16 bit integers, 16 and 32 bit floats; gray or RGB,
-/// with or without alpha; strips or tiles) and PNG (all kinds).
+/// Supported are OpenEXR (rows or tiles, every compression but HTJ2K, no deep data; R, G, B or Y, with or
+/// without A, also in the only layer or part), TIFF (8 and 16 bit integers, 16 and 32 bit floats; gray or
+/// RGB, with or without alpha; strips or tiles) and PNG (all types).
 ///
 /// # Memory
 ///
-/// A band of `rows` rows takes 12 bytes a pixel, 16 with alpha, and while it is made the same
-/// again for what is unpacked: twice 16384 · 16 bytes a row for a picture of 16384 columns, or 32 MiB
-/// for 64 rows. Files that are stored in tiles or blocks of rows add one row of those. Two
-/// kinds of files must be unpacked at once: interlaced PNG, up to 1 GiB, and TIFF in one strip, up to
-/// 1 GiB; larger ones are refused.
+/// A band takes 12 bytes per pixel, 16 with alpha, and as much again while it is decompressed: 32 MiB for
+/// 64 rows of 16,384 columns. Files in tiles or blocks of rows take one more row of those. Interlaced PNG
+/// and TIFF in a single strip are decompressed whole, and refused above 1 GiB.
 #[derive(Debug)]
 pub struct Picture {
     source: Box<dyn Source>,
@@ -48,11 +46,11 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Opens a picture; its format is told by its first bytes.
+    /// Opens a picture, whose first bytes determine its format.
     ///
     /// # Errors
     ///
-    /// [`PictureError`] says what was found and what was expected; no content panics.
+    /// [`PictureError`] if the file cannot be read or is not a supported picture.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, PictureError> {
         let path = path.as_ref();
         let mut found = Vec::new();
@@ -66,23 +64,22 @@ impl Picture {
         Ok(Self { source, facts, next_row: 0 })
     }
 
-    /// Width and height, pixels; 1 or more. Of an OpenEXR file: the data window's.
+    /// Width and height in pixels, 1 or more; those of the data window of an OpenEXR file.
     pub fn size(&self) -> [usize; 2] {
         self.facts.size
     }
 
-    /// The RGB space that the file states; nothing is guessed.
+    /// The RGB space that the file states, if any.
     ///
-    /// OpenEXR: `chromaticities`, or ACES2065-1 where `acesImageContainerFlag` is 1. PNG: cICP,
-    /// sRGB or cHRM. TIFF: its primaries and white. A file with an ICC profile, which is not
-    /// read, has none.
+    /// OpenEXR: `chromaticities`, or ACES2065-1 if `acesImageContainerFlag` is 1. PNG: cICP, sRGB or
+    /// cHRM. TIFF: the primaries and the white. `None` for files with an ICC profile, which is not read.
     pub fn space(&self) -> Option<&RgbSpace> {
         self.facts.space.as_ref()
     }
 
-    /// How stored numbers stand for light, where the file or its format says.
+    /// The encoding of stored numbers, if the file or its format states it.
     ///
-    /// OpenEXR and floats are linear; PNG says by cICP, sRGB or gAMA; integers of a TIFF say nothing.
+    /// OpenEXR and TIFF of floats are linear; PNG has cICP, sRGB or gAMA; TIFF of integers states none.
     pub fn encoding(&self) -> Option<Encoding> {
         self.facts.encoding
     }
@@ -92,18 +89,18 @@ impl Picture {
         self.facts.alpha.is_some()
     }
 
-    /// What alpha does to the colors; `None` where there is none. Colors are passed on as stored.
+    /// How colors and alpha are combined; `None` without alpha. Bands have the colors as stored.
     pub(crate) fn alpha(&self) -> Option<Alpha> {
         self.facts.alpha
     }
 
-    /// Data and display window of an OpenEXR file, for a file made from it.
+    /// Data and display window of an OpenEXR file.
     pub(crate) fn windows(&self) -> Option<[Window; 2]> {
         self.facts.windows
     }
 
-    /// The next rows: at least `rows`, rounded up to whole blocks of the file, or what is left;
-    /// `None` after the last.
+    /// The next rows: `rows`, rounded up to whole blocks of the file, or fewer at the end of the picture;
+    /// `None` after the last row.
     ///
     /// # Errors
     ///
@@ -121,9 +118,7 @@ impl Picture {
         Ok(Some(Band { first_row, width, rgb, alpha }))
     }
 
-    /// The bands of the rest of the picture, of about `rows` rows each, from top to bottom.
-    ///
-    /// Ends after an error.
+    /// The bands of the rest of the picture, each like [`Picture::read_band`]. Ends after an error.
     pub fn bands(&mut self, rows: usize) -> impl Iterator<Item = Result<Band, PictureError>> + '_ {
         std::iter::from_fn(move || {
             let band = self.read_band(rows).transpose();

@@ -1,4 +1,4 @@
-//! The spectral layout of OpenEXR: channel names, the compact form, texels, and a linter.
+//! The spectral layout of OpenEXR: channel names, the compact form, a reader of texels, and a linter.
 
 mod attribute_spectrum;
 pub(crate) mod channel;

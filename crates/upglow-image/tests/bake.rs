@@ -22,7 +22,7 @@ use upglow_image::{
 
 const POLISHED: Form = Form::Material;
 
-/// Bands that programs of others use most.
+/// The bands that most programs use.
 fn tens() -> Grid {
     Grid::try_new(380, 780, 10).unwrap()
 }
@@ -44,7 +44,7 @@ fn built(set: &str, resolution: usize) -> Cube {
     build_cube(&Contract::default(), &dyes(set), options, resolution, &Unwatched).unwrap()
 }
 
-/// Ten nodes a side, in ACEScg under D65.
+/// Ten nodes per side, in ACEScg under D65.
 fn cube() -> &'static Cube {
     static CUBE: OnceLock<Cube> = OnceLock::new();
     CUBE.get_or_init(|| built("konig8", 10))
@@ -109,7 +109,7 @@ impl Desk {
         path
     }
 
-    /// Bakes colors with [`cube`] and gives the file.
+    /// Bakes colors with [`cube`] and returns the path of the file.
     fn baked(&self, form: Form, sample: Sample, width: usize, rgb: &[[f32; 3]]) -> PathBuf {
         let input = self.picture("in.exr", width, rgb, None);
         let output = self.path("out.exr");
@@ -179,9 +179,9 @@ fn exact_cells() -> Vec<[usize; 3]> {
     cells.filter(|&cell| corners(cell).all(exact)).collect()
 }
 
-/// Texels of a block that a filter makes one texel of.
+/// Texels that a filter averages into one.
 const BLOCK: usize = 16;
-/// What a block of exact cells may differ by when it is filtered first: the issue's own limit.
+/// Greatest difference between filtering a block of exact cells before and after baking.
 const FILTERED_DE2000: f64 = 0.01;
 
 #[test]
@@ -234,7 +234,7 @@ fn within_a_tetrahedron_filtering_first_or_last_gives_the_same_under_any_light()
     }
 }
 
-/// Colors of the example pictures, evenly from all over them, and random ones.
+/// Evenly spaced colors of the example pictures, and random ones.
 fn many_colors() -> Vec<[f32; 3]> {
     const APART: usize = 24;
     let pictures = ExamplePicture::ALL.iter().flat_map(|picture| {
@@ -286,7 +286,7 @@ fn is_exact(rgb: [f32; 3]) -> bool {
 }
 
 #[test]
-fn the_contracts_own_light_gives_rgb_back_where_the_corners_are_exact() {
+fn the_contracts_own_light_reproduces_rgb_where_the_corners_are_exact() {
     // Half of the last of eleven digits, and of the smallest step.
     let half_step = |v: f64| v.abs() / 2048.0 + 3e-8;
     let desk = Desk::new();
@@ -317,8 +317,7 @@ fn color_of_bands(texel: &SpectralTexel, grid: Grid) -> Xyz {
 
 #[test]
 fn compact_and_full_files_have_the_same_colors() {
-    // One material against four of the same color: they differ by what the sum over 10 nm misses of
-    // each.
+    // One material against four of the same color: sums over 10 nm bands have different errors.
     const BANDS_DE2000: f64 = 0.25;
     let desk = Desk::new();
     let rgb: Vec<[f32; 3]> =
@@ -332,7 +331,7 @@ fn compact_and_full_files_have_the_same_colors() {
         assert!(found < BANDS_DE2000, "{found} {rgb:?}");
         fluorescent += usize::from(full.reradiation.iter().any(|(.., share)| *share > 0.01));
     }
-    assert!(fluorescent > 5, "{fluorescent} fluorescent texels tell little");
+    assert!(fluorescent > 5, "only {fluorescent} fluorescent texels");
 }
 
 #[test]
@@ -383,7 +382,7 @@ fn a_ring_of_fourteen_dyes_expands_to_the_matrix_of_the_blend() {
 }
 
 #[test]
-fn no_band_gives_back_more_than_it_got() {
+fn no_band_loses_more_light_than_it_receives() {
     // Forty shares of a column, each rounded by at most 2⁻¹² of itself; float sums have seven digits.
     let tolerances = [(Sample::Half, 1.0 / 4096.0), (Sample::Float, 1e-6)];
     let desk = Desk::new();
@@ -414,7 +413,7 @@ fn no_band_gives_back_more_than_it_got() {
 }
 
 #[test]
-fn alpha_passes_and_dims_light_but_no_material() {
+fn alpha_is_copied_and_multiplies_light_but_no_material() {
     let (desk, rgb) = (Desk::new(), random_colors(12));
     let alpha: Vec<f32> = (0..12_u8).map(|i| f32::from(i) / 8.0).collect();
     let dimmed = |rgb: &[[f32; 3]]| -> Vec<[f32; 3]> {
@@ -487,7 +486,7 @@ fn an_srgb_png_gets_its_own_colors_from_an_acescg_cube() {
         }
     }
     assert!(exact > 20, "only {exact} exact colors");
-    // The same, told by the caller.
+    // The same with the space and encoding given by the caller.
     let said = std::fs::read(&output).unwrap();
     png(&input, png::ColorType::Rgb, 10, codes.as_flattened(), false);
     let assumed = Assumed { space: RgbSpace::named("srgb").ok(), encoding: Some(Encoding::Srgb) };
@@ -495,15 +494,12 @@ fn an_srgb_png_gets_its_own_colors_from_an_acescg_cube() {
     bake(cube(), radiance("D65"), told, &input, &output).unwrap();
     assert_eq!(std::fs::read(&output).unwrap(), said);
     let refused = bake(cube(), POLISHED, options(Sample::Half), &input, &output).unwrap_err();
-    assert_eq!(
-        refused.to_string(),
-        "the file does not name its RGB space, expected one to be given"
-    );
+    assert_eq!(refused.to_string(), "the file does not name its RGB space");
     assert_eq!(std::fs::read(&output).unwrap(), said);
 }
 
 #[test]
-fn light_of_a_png_with_alpha_is_dimmed_as_openexr_has_it() {
+fn light_of_a_png_with_alpha_is_multiplied_by_alpha_as_in_openexr() {
     let (desk, codes) = (Desk::new(), codes());
     let (input, output) = (desk.path("in.png"), desk.path("out.exr"));
     let bake = || {
@@ -591,7 +587,7 @@ fn a_texel_outside_is_refused_by_its_place_and_the_old_file_stays() {
 }
 
 #[test]
-fn each_repair_bakes_what_it_says() {
+fn each_repair_bakes_the_colors_it_documents() {
     let desk = Desk::new();
     let flawed = [[2.0, 0.5, -1.0], [0.25, 0.5, 1.0], [f32::NAN, 0.5, 0.5], [0.0, 4.0, 0.0]];
     let input = desk.picture("flawed.exr", 2, &flawed, None);
@@ -618,7 +614,7 @@ fn each_repair_bakes_what_it_says() {
     assert_eq!(baked.repaired, 3);
     let found = colors(&output);
     assert!(difference(xyz([0.25, 0.5, 1.0]), xyz(found[1])) < 0.5, "{:?}", found[1]);
-    assert!(found[2].iter().all(|v| v.abs() < 1e-6), "not-a-number becomes black");
+    assert!(found[2].iter().all(|v| v.abs() < 1e-6), "NaN becomes black");
 }
 
 #[test]

@@ -1,4 +1,5 @@
-//! No file makes a reader panic: cut, altered and invented ones get one clear line.
+//! No file makes a reader panic: truncated, altered and invented files are refused with a message of one
+//! line.
 
 #![expect(clippy::unwrap_used, reason = "a test fails where its files cannot be made")]
 
@@ -17,7 +18,7 @@ fn value(x: usize, y: usize, c: usize) -> f32 {
 }
 
 fn exr_file(folder: &Path, compression: Compression, blocks: Blocks) -> Vec<u8> {
-    let path = folder.join("seed.exr");
+    let path = folder.join("sample.exr");
     let channel = |name: &str, c: usize| {
         let pixels = (0..SIZE[0] * SIZE[1]).map(|i| value(i % SIZE[0], i / SIZE[0], c));
         let samples = if c == 0 {
@@ -44,7 +45,7 @@ fn png_file(folder: &Path, interlaced: bool) -> Vec<u8> {
     if interlaced {
         return include_bytes!("data/interlaced.png").to_vec();
     }
-    let path = folder.join("seed.png");
+    let path = folder.join("sample.png");
     let file = std::fs::File::create(&path).unwrap();
     let mut encoder = png::Encoder::new(file, 40, 37);
     encoder.set_color(png::ColorType::Rgb);
@@ -59,7 +60,7 @@ fn png_file(folder: &Path, interlaced: bool) -> Vec<u8> {
 
 fn tiff_file(folder: &Path, compression: tiff::encoder::Compression) -> Vec<u8> {
     use tiff::encoder::{TiffEncoder, colortype};
-    let path = folder.join("seed.tif");
+    let path = folder.join("sample.tif");
     let file = std::fs::File::create(&path).unwrap();
     let mut encoder = TiffEncoder::new(file).unwrap().with_compression(compression);
     let samples: Vec<u16> = (0..40 * 37 * 3_u16).collect();
@@ -67,8 +68,8 @@ fn tiff_file(folder: &Path, compression: tiff::encoder::Compression) -> Vec<u8> 
     std::fs::read(path).unwrap()
 }
 
-fn seeds(folder: &Path) -> Vec<(String, Vec<u8>)> {
-    let mut seeds = Vec::new();
+fn samples(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let mut samples = Vec::new();
     for compression in [
         Compression::Uncompressed,
         Compression::RLE,
@@ -83,23 +84,23 @@ fn seeds(folder: &Path) -> Vec<(String, Vec<u8>)> {
     ] {
         for blocks in [Blocks::ScanLines, Blocks::Tiles(Vec2(16, 16))] {
             let name = format!("{compression:?} {blocks:?}");
-            seeds.push((name, exr_file(folder, compression, blocks)));
+            samples.push((name, exr_file(folder, compression, blocks)));
         }
     }
-    seeds.push(("png".into(), png_file(folder, false)));
-    seeds.push(("interlaced png".into(), png_file(folder, true)));
+    samples.push(("png".into(), png_file(folder, false)));
+    samples.push(("interlaced png".into(), png_file(folder, true)));
     for (name, compression) in [
         ("plain", tiff::encoder::Compression::Uncompressed),
         ("lzw", tiff::encoder::Compression::Lzw),
         ("deflate", tiff::encoder::Compression::Deflate(Default::default())),
         ("packbits", tiff::encoder::Compression::Packbits),
     ] {
-        seeds.push((format!("{name} tiff"), tiff_file(folder, compression)));
+        samples.push((format!("{name} tiff"), tiff_file(folder, compression)));
     }
-    seeds
+    samples
 }
 
-/// Reads all that there is, by every reader; the first error as a line.
+/// Reads a file with every reader; returns the message of the first error.
 fn read_all(path: &Path) -> Result<(), String> {
     let line = |error: &dyn std::fmt::Display| error.to_string();
     let mut picture = Picture::open(path).map_err(|e| line(&e))?;
@@ -131,22 +132,22 @@ fn check(path: &Path, name: &str, bytes: &[u8]) -> Result<(), String> {
 #[test]
 fn whole_files_are_read() {
     let folder = tempfile::tempdir().unwrap();
-    for (name, bytes) in seeds(folder.path()) {
+    for (name, bytes) in samples(folder.path()) {
         assert_eq!(check(&folder.path().join("x"), &name, &bytes), Ok(()), "{name}");
     }
 }
 
 #[test]
-fn a_file_cut_short_anywhere_is_refused() {
+fn a_truncated_file_is_refused_wherever_it_ends() {
     let folder = tempfile::tempdir().unwrap();
-    for (name, bytes) in seeds(folder.path()) {
-        // Every byte of one header of each format, of the others now and then.
+    for (name, bytes) in samples(folder.path()) {
+        // Every length within the first header of each format, some lengths of the others.
         let step = if name.contains("Tiles") || name.contains('(') { 41 } else { 1 };
         let lengths = (0..bytes.len().min(400)).step_by(step);
         let lengths = lengths.chain((400..bytes.len()).step_by(211));
         for length in lengths {
             let result = check(&folder.path().join("x"), &name, &bytes[..length]);
-            // What follows the last block of an interlaced PNG may go unread.
+            // Bytes after the last block of an interlaced PNG may not be read.
             let tail = name.contains("png") && length + 64 > bytes.len();
             let message = result.err().or(tail.then(String::new));
             assert!(message.is_some(), "{name} cut at {length} of {}", bytes.len());
@@ -154,7 +155,7 @@ fn a_file_cut_short_anywhere_is_refused() {
     }
 }
 
-/// A generator of the xorshift kind: the same files in every run.
+/// A xorshift generator, which gives the same files in every run.
 struct Random(u64);
 
 impl Random {
@@ -172,11 +173,11 @@ impl Random {
 
 fn altered_files_panic_nowhere(rounds: usize) {
     let folder = tempfile::tempdir().unwrap();
-    for (name, bytes) in seeds(folder.path()) {
+    for (name, bytes) in samples(folder.path()) {
         for round in 0..rounds {
             let mut random = Random(0x9e37_79b9_7f4a_7c15 ^ (round as u64 + 1));
             let mut altered = bytes.clone();
-            // Half the rounds hit the header, where sizes and places are.
+            // Half the rounds alter the header, which has sizes and positions.
             let end = if round % 2 == 0 { altered.len().min(600) } else { altered.len() };
             for _ in 0..1 + random.below(4) {
                 let at = random.below(end);
@@ -199,7 +200,7 @@ fn slow_altered_bytes_panic_nowhere() {
 }
 
 #[test]
-fn noise_and_absent_files_are_refused_by_name() {
+fn noise_and_absent_files_are_refused_with_what_was_found() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("x");
     let message = |bytes: &[u8]| check(&path, "noise", bytes).unwrap_err();
@@ -217,7 +218,7 @@ fn a_table_that_the_file_cannot_hold_is_refused_before_it_is_read() {
     let path = folder.path().join("x");
     let description = ExrDescription::new([100_000, 100_000], ["R", "G", "B"]);
     drop(ExrWriter::create(&path, description).unwrap());
-    // The data window of a small file, stretched.
+    // A small file with an enlarged data window.
     let mut bytes = exr_file(folder.path(), Compression::ZIP16, Blocks::ScanLines);
     let at = bytes.windows(10).position(|w| w == b"dataWindow").unwrap() + 10 + 1 + 6 + 4;
     bytes[at + 8..at + 12].copy_from_slice(&99_999_i32.to_le_bytes());

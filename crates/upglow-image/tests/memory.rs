@@ -1,5 +1,5 @@
-//! A picture of 16384² texels is written and read in little memory. Alone in its file: the memory
-//! that is measured is the process's.
+//! A picture of 16384² texels is written and read in bounded memory. The only test of this file, because
+//! it measures the memory of the process.
 
 use upglow_image::{ExrDescription, ExrWriter, Picture};
 
@@ -40,6 +40,6 @@ fn slow_a_picture_of_16k_stays_within_bounded_memory() {
     assert_eq!(rows, SIDE);
     match peak_kib() {
         Some(peak) => assert!(peak < MOST_KIB, "{peak} KiB, expected less than {MOST_KIB}"),
-        None => println!("skipped: the measure of memory, the system does not tell it"),
+        None => println!("skipped: this system does not report the peak memory of a process"),
     }
 }

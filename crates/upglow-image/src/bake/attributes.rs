@@ -1,4 +1,4 @@
-//! What baked files say of the cube they were made with.
+//! Attributes of baked files that describe the cube they were made with.
 
 use upglow::{Cube, Node};
 
@@ -7,7 +7,7 @@ use crate::spectral::channel::{LAYOUT_VERSION, LAYOUT_VERSION_VALUE};
 
 /// The header of the cube as JSON: contract, model, fit.
 pub(super) const HEADER: &str = "upglow.header";
-/// A cube file of two empty nodes a side: the same contract, model and curves, for programs.
+/// A cube file of two empty nodes per side: the same contract, model and curves, for programs.
 pub(super) const MODEL: &str = "upglow.model";
 /// Name of the form: material, spectral or radiance.
 pub(super) const FORM: &str = "upglow.form";
@@ -16,7 +16,7 @@ pub(super) const CHANNELS: &str = "upglow.channels";
 
 const MODEL_KIND: &str = "upglowCube";
 
-/// What every form says.
+/// The attributes of every form.
 pub(super) fn common(cube: &Cube, form: &str, channels: &str) -> Attributes {
     Attributes::from([
         ("chromaticities".to_owned(), chromaticities(&cube.contract().space)),
@@ -26,7 +26,7 @@ pub(super) fn common(cube: &Cube, form: &str, channels: &str) -> Attributes {
     ])
 }
 
-/// What both spectral forms say.
+/// The attributes of both spectral forms.
 pub(super) fn spectral(cube: &Cube, channels: &str) -> Attributes {
     let mut attributes = common(cube, "spectral", channels);
     attributes.insert(LAYOUT_VERSION.into(), LAYOUT_VERSION_VALUE.into());
@@ -37,17 +37,12 @@ pub(super) fn spectral(cube: &Cube, channels: &str) -> Attributes {
 pub(super) fn model(cube: &Cube) -> Attribute {
     let [least, _] = Cube::RESOLUTIONS;
     let nodes = vec![Node::default(); least.pow(3)];
-    let (contract, model, fit) =
-        (cube.contract().clone(), cube.model().clone(), cube.fit().clone());
-    let empty = Cube::new(contract, model, fit, least, nodes).expect("empty nodes fit any model");
-    let bytes = empty.to_bytes();
-    Attribute::Other { kind: MODEL_KIND.into(), bytes }
+    let (contract, model) = (cube.contract().clone(), cube.model().clone());
+    let empty = Cube::new(contract, model, cube.fit().clone(), least, nodes);
+    Attribute::new(MODEL_KIND, empty.expect("empty nodes fit any model").to_bytes())
 }
 
-/// The cube without materials that [`model`] stored; `None` where there is none or it is damaged.
+/// The cube without materials that [`model`] stored; `None` if it is absent or damaged.
 pub(super) fn read_model(attributes: &Attributes) -> Option<Cube> {
-    match attributes.get(MODEL)? {
-        Attribute::Other { kind, bytes } if kind == MODEL_KIND => Cube::from_bytes(bytes).ok(),
-        _ => None,
-    }
+    Cube::from_bytes(attributes.get(MODEL)?.of_kind(MODEL_KIND)?).ok()
 }

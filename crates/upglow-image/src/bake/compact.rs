@@ -1,4 +1,4 @@
-//! Reflectance in bands and maps of the dyes: the compact bispectral form.
+//! The compact bispectral form: reflectance in bands and maps of the dyes.
 
 use upglow::{Cube, DyeModel, Interpolation, Mixing, Mixture, Node};
 use upglow_color::{Grid, LinearRgb};
@@ -12,13 +12,13 @@ use crate::exr::header::Sample;
 use crate::exr::writer::Compression;
 use crate::spectral::compact::{CompactForm, CompactLayout, MOST_EXTRA_CHANNELS};
 
-/// The channels of [`CompactLayout`] beside a preview.
+/// Fills the channels of a [`CompactLayout`] and a preview.
 #[derive(Debug)]
 pub(super) struct CompactMaker<'c> {
     cube: &'c Cube,
     layout: CompactLayout,
     preview: RadianceMaker<'c>,
-    /// Pooled dyes have one map each only where a texel has one material.
+    /// Pooled dyes fit in one map per dye only if each texel has a single material.
     polisher: Option<Polisher<'c>>,
 }
 
@@ -42,7 +42,7 @@ impl<'c> CompactMaker<'c> {
         })
     }
 
-    /// What is stored of each texel, in its order.
+    /// Passes the mixture that is stored for each texel to `store`, in the order of the texels.
     fn for_each_mixture(&self, rgb: &[[f32; 3]], mut store: impl FnMut(&Mixture<'_>)) {
         let Some(polisher) = &self.polisher else {
             for rgb in rgb {
@@ -76,10 +76,10 @@ impl Maker for CompactMaker<'_> {
         Compression::Zips
     }
 
-    /// Half precision would move positions on the ring of dyes.
-    fn sample(&self, asked: Sample) -> Sample {
+    /// Half precision would change positions on the ring of dyes.
+    fn sample(&self, requested: Sample) -> Sample {
         match self.layout.form() {
-            CompactForm::PerDye => asked,
+            CompactForm::PerDye => requested,
             CompactForm::PerLobe => Sample::Float,
         }
     }

@@ -1,4 +1,4 @@
-//! What every baked form says of its channels, and how it fills them.
+//! The channels and attributes of each baked form.
 
 use std::fmt::Debug;
 
@@ -8,26 +8,26 @@ use crate::exr::writer::Compression;
 
 /// Makes the channels of one form from linear RGB in the cube's space, each component in 0..=1.
 pub(super) trait Maker: Debug + Sync {
-    /// Names, in the order in which planes are filled.
+    /// Names of the channels, in the order of the planes.
     fn channels(&self) -> Vec<String>;
 
-    /// What the file says besides.
+    /// Attributes of the file.
     fn attributes(&self) -> Attributes;
 
-    /// How the file is packed.
+    /// How the file is compressed.
     fn compression(&self) -> Compression {
         Compression::Zip
     }
 
-    /// Whether the channels are light, which OpenEXR has multiplied by alpha, and not properties of
-    /// a material.
+    /// Whether the channels are light, which OpenEXR stores multiplied by alpha, instead of properties
+    /// of a material.
     fn is_light(&self) -> bool {
         false
     }
 
-    /// The kind of number that holds the channels, where the caller asked for `asked`.
-    fn sample(&self, asked: Sample) -> Sample {
-        asked
+    /// The type of samples, given the one that the caller requested.
+    fn sample(&self, requested: Sample) -> Sample {
+        requested
     }
 
     /// Fills one row of each channel, `[channel][texel]`.

@@ -1,4 +1,4 @@
-//! The parameters of one material per texel.
+//! The material form: the parameters of one material per texel.
 
 use half::f16;
 use upglow::{Cube, Model, Node};
@@ -9,18 +9,18 @@ use super::maker::Maker;
 use crate::exr::attribute::Attributes;
 use crate::exr::header::Sample;
 
-/// Three numbers of the reflectance and, where the model fluoresces, three of that.
+/// Stores three numbers of the reflectance and, if the model fluoresces, three of the fluorescence.
 #[derive(Debug)]
 pub(super) struct MaterialMaker<'c> {
     cube: &'c Cube,
     polisher: Polisher<'c>,
-    /// Whether materials are moved until they show their colors.
+    /// Whether materials are adjusted until they match their colors.
     is_polished: bool,
     sample: Sample,
 }
 
-/// Wavelengths are stored from here on: half precision keeps an eighth of a nanometer within 256 nm
-/// of zero, and only half a nanometer at 600.
+/// Wavelengths are stored relative to this: half precision resolves an eighth of a nanometer within
+/// 256 nm of zero, and only half a nanometer at 600.
 const ORIGIN_NM: f32 = 550.0;
 
 /// Steepest point of the reflectance: its wavelength, level and slope; see [`upglow::Edge`].
@@ -97,7 +97,7 @@ impl Maker for MaterialMaker<'_> {
 fn stored(node: &Node, dyes: bool, sample: Sample) -> [f32; 6] {
     let [edge_nm, level, slope_per_nm] = node.reflectance;
     let [first, second, third] = node.fluorescence;
-    // What is infinite in half precision is white or black long before.
+    // Levels that would be infinite in half precision are white or black in any case.
     let level = level.clamp(-f16::MAX.to_f32(), f16::MAX.to_f32());
     let slope_per_nm = match sample {
         Sample::Half => towards_zero(slope_per_nm),
@@ -112,40 +112,37 @@ fn stored(node: &Node, dyes: bool, sample: Sample) -> [f32; 6] {
     [edge_nm - ORIGIN_NM, level, slope_per_nm, a, b, c]
 }
 
-/// The nearest half-precision number that is not greater in size: rounding may not lift a slope
-/// above its limit.
+/// The nearest half-precision number of no greater magnitude: rounding must not raise a slope above
+/// its limit.
 fn towards_zero(value: f32) -> f32 {
     let nearest = f16::from_f32(value);
     let size = nearest.to_f32().abs();
     if size <= value.abs() {
         return nearest.to_f32();
     }
-    // The bits of a half are in the order of its size.
+    // The bits of half-precision numbers are ordered by magnitude.
     f16::from_bits(nearest.to_bits() - 1).to_f32()
 }
 
-/// The node of a texel's numbers; the color difference is not among them.
+/// The node of a texel's numbers, which do not include the color difference.
 pub(super) fn node_of(values: [f32; 6], model: &Model) -> Node {
     let [edge, level, slope_per_nm, a, b, c] = values;
+    let (dye, fluorescence) = match model {
+        Model::Reflectance => (0, [0.0; 3]),
+        Model::Dyes(_) => (dye_index(a), [b, c, 0.0]),
+        Model::Analytic(_) => (0, [a + ORIGIN_NM, b, c]),
+    };
     let reflectance = [edge + ORIGIN_NM, level, slope_per_nm];
-    match model {
-        Model::Reflectance => Node { reflectance, ..Node::default() },
-        Model::Dyes(_) => {
-            Node { reflectance, dye: dye_number(a), fluorescence: [b, c, 0.0], de2000: 0.0 }
-        }
-        Model::Analytic(_) => {
-            Node { reflectance, dye: 0, fluorescence: [a + ORIGIN_NM, b, c], de2000: 0.0 }
-        }
-    }
+    Node { reflectance, dye, fluorescence, de2000: 0.0 }
 }
 
-/// A dye's number that was stored among other numbers.
+/// The index of a dye from its channel.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "a ring has at most 255 dyes; anything else saturates, and no cube takes it"
+    reason = "a ring has at most 255 dyes; invalid numbers saturate and are rejected by the model"
 )]
-fn dye_number(value: f32) -> u8 {
+fn dye_index(value: f32) -> u8 {
     value as u8
 }
 

@@ -1,15 +1,16 @@
 //! Baked materials, read back.
 
+use std::ops::Range;
 use std::path::Path;
 
-use upglow::{Cube, Material, Model, Node, NodeError};
+use upglow::{Cube, Material, Model};
 
 use super::attributes::{MODEL, read_model};
 use super::material::{channel_names, node_of};
 use crate::exr::reader::ExrReader;
 use crate::spectral::error::FormError;
 
-/// A file of one material per texel, as `docs/material-exr.md` describes it, opened for reading.
+/// Reads a file of one material per texel, as `docs/material-exr.md` describes it.
 #[derive(Debug)]
 pub struct MaterialPicture {
     reader: ExrReader,
@@ -19,7 +20,7 @@ pub struct MaterialPicture {
 }
 
 impl MaterialPicture {
-    /// Whether a file claims to hold materials.
+    /// Whether the attributes of a file say that it holds materials.
     pub fn is_stated(reader: &ExrReader) -> bool {
         reader.attributes().contains_key(MODEL)
     }
@@ -31,8 +32,11 @@ impl MaterialPicture {
     /// [`FormError`] if it cannot be read or holds no materials.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, FormError> {
         let reader = ExrReader::open(path)?;
-        let cube =
-            read_model(reader.attributes()).ok_or(FormError::NotMaterial { attribute: MODEL })?;
+        let cube = read_model(reader.attributes()).ok_or_else(|| FormError::Attribute {
+            name: MODEL.into(),
+            found: "absent or damaged".into(),
+            expected: "a file of `upglow bake --as material`".into(),
+        })?;
         let names = channel_names(cube.model());
         let channels = names.map(|name| reader.channel(name)).collect::<Result<_, _>>()?;
         Ok(Self { reader, cube, channels })
@@ -43,7 +47,7 @@ impl MaterialPicture {
         self.reader.size()
     }
 
-    /// What the fluorescence is made of.
+    /// The model of the materials.
     pub fn model(&self) -> &Model {
         self.cube.model()
     }
@@ -67,23 +71,16 @@ impl MaterialPicture {
         Ok(self.region(x..x + 1, y)?[0])
     }
 
-    fn region(
-        &mut self,
-        columns: std::ops::Range<usize>,
-        y: usize,
-    ) -> Result<Vec<Material>, FormError> {
+    fn region(&mut self, columns: Range<usize>, y: usize) -> Result<Vec<Material>, FormError> {
         let planes = self.reader.read_region(columns.clone(), y..y + 1, &self.channels)?;
         let each = columns.enumerate().map(|(i, x)| {
             let mut values = [0.0; 6];
             values.iter_mut().zip(&planes).for_each(|(value, plane)| *value = plane[i]);
-            let node = node_of(values, self.cube.model());
-            self.material(node).map_err(|source| FormError::Material { x, y, source })
+            let node = node_of(values, self.model());
+            let checked = node.check(self.model());
+            checked.map_err(|source| FormError::Material { x, y, source })?;
+            Ok(node.material(self.model()))
         });
         each.collect()
-    }
-
-    fn material(&self, node: Node) -> Result<Material, NodeError> {
-        node.check(self.cube.model())?;
-        Ok(node.material(self.cube.model()))
     }
 }

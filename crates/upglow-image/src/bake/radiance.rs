@@ -1,4 +1,4 @@
-//! Color under a light.
+//! Colors under a light.
 
 use upglow::{ColorTable, Cube};
 use upglow_color::rounding::to_single;
@@ -8,7 +8,7 @@ use super::attributes;
 use super::maker::Maker;
 use crate::exr::attribute::{Attribute, Attributes};
 
-/// Linear RGB, in the cube's space, of the blend of each texel under a light.
+/// For each texel the linear RGB of its blend under a light, in the cube's space.
 #[derive(Debug)]
 pub(super) struct RadianceMaker<'c> {
     cube: &'c Cube,
@@ -57,8 +57,9 @@ impl Maker for RadianceMaker<'_> {
 
     fn attributes(&self) -> Attributes {
         let mut attributes = attributes::common(self.cube, "radiance", CHANNELS);
+        let white = Attribute::singles("v3f", &self.white.map(to_single));
         attributes.insert("upglow.light".into(), self.light.name().into());
-        attributes.insert("upglow.white".into(), Attribute::Float3(self.white.map(to_single)));
+        attributes.insert("upglow.white".into(), white);
         attributes
     }
 

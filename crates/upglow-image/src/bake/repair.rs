@@ -1,140 +1,104 @@
-//! Values that no cube holds, and colors that no material shows, made into ones that can be baked.
+//! Changes colors that cannot be baked into colors that can.
 
 use rayon::prelude::*;
 use upglow_color::rounding::to_single;
 use upglow_color::{LinearRgb, StandingKind, choices};
 use upglow_fit::StandingTable;
 
-/// What to do with texels that cannot be baked as they are.
+/// How to change texels that cannot be baked as they are.
 ///
-/// With each, a texel with a value that is NaN or infinite becomes black, and is counted.
+/// Texels with a value that is NaN or infinite always become black.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Repair {
-    /// Each value becomes the nearest in 0..=1.
+    /// Clamps each value to 0..=1.
     Clip,
-    /// The whole picture is divided by its greatest value, if that is above 1; what is negative
-    /// becomes 0.
+    /// Divides the whole picture by its greatest value, if that is above 1; negative values become 0.
     Scale,
-    /// Each texel becomes the nearest color in XYZ that some material shows, then each value the
-    /// nearest in 0..=1.
+    /// Moves each texel to the nearest color in XYZ that some material matches, then clamps each value
+    /// to 0..=1.
     Nearest,
 }
 
-/// A repair with all it must know of the picture.
+/// A repair, and the data that it uses.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Repairer<'a> {
     pub(super) repair: Repair,
-    /// The picture's greatest value, by [`greatest_value`], where [`Repair::reads_all_first`].
+    /// For [`Repair::Scale`]: the [`greatest_value`] of the picture.
     pub(super) greatest: f32,
-    /// What materials show under the picture's contract.
+    /// The colors that materials match under the picture's contract.
     pub(super) table: &'a StandingTable,
 }
 
-/// How many texels a repair changed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Repaired {
-    /// Texels that are not what they were, those made black among them.
-    pub(super) changed: u64,
-    /// Texels with a value that was NaN or infinite, made black.
-    made_black: u64,
-}
-
-/// Texels that one core repairs at a time: enough to be worth handing over.
+/// Texels per parallel task.
 const REPAIRED_TOGETHER: usize = 1024;
 
-/// How far a texel moves from the border of what materials show towards a gray, as a share of the
-/// distance. Single precision rounds by 6e-8, so with much less a texel could end up outside; with much
-/// more one could see it.
+/// How far a texel moves from the border of the reachable colors towards a gray, as a share of the
+/// distance. Single precision rounds by 6e-8: a much smaller share could leave a texel outside; a much
+/// larger one would be visible.
 const OFF_THE_BORDER: f64 = 1e-5;
 
-/// Halvings of the distance to gray for a color that 0..=1 moved out of reach: to a thousandth of it.
-const HALVINGS: usize = 10;
+/// Bisections of the distance to gray, for a color that clamping made unreachable.
+const BISECTIONS: usize = 10;
 
-/// The greatest finite value; 0 if there is none above. The greatest of a picture is the greatest
-/// of its parts.
+/// The greatest finite value; 0 if none is above 0.
 pub(super) fn greatest_value(rgb: &[[f32; 3]]) -> f32 {
     let finite = rgb.as_flattened().iter().copied().filter(|v| v.is_finite());
     finite.fold(0.0, f32::max)
 }
 
-impl Repair {
-    /// Whether the whole picture must be read once, for [`greatest_value`], before a texel changes.
-    pub(super) fn reads_all_first(self) -> bool {
-        self == Self::Scale
-    }
-}
-
 impl Repairer<'_> {
-    /// Repairs texels in place. Afterwards all values are in 0..=1.
-    pub(super) fn repair(&self, rgb: &mut [[f32; 3]]) -> Repaired {
+    /// Repairs texels in place, so that all values are in 0..=1. Returns the number of texels that
+    /// changed.
+    pub(super) fn repair(&self, rgb: &mut [[f32; 3]]) -> u64 {
+        let changed = |texel: &mut [f32; 3]| {
+            let is_finite = texel.iter().all(|v| v.is_finite());
+            let repaired = if is_finite { self.color(*texel) } else { [0.0; 3] };
+            u64::from(std::mem::replace(texel, repaired) != repaired)
+        };
         let parts = rgb.par_chunks_mut(REPAIRED_TOGETHER);
-        let repaired = parts.map(|part| {
-            part.iter_mut().fold(Repaired::default(), |sum, texel| sum.with(self.texel(texel)))
-        });
-        repaired.reduce(Repaired::default, Repaired::with)
-    }
-
-    fn texel(&self, texel: &mut [f32; 3]) -> Repaired {
-        let made_black = texel.iter().any(|v| !v.is_finite());
-        let repaired = if made_black { [0.0; 3] } else { self.color(*texel) };
-        let changed = repaired != *texel;
-        *texel = repaired;
-        Repaired { changed: u64::from(changed), made_black: u64::from(made_black) }
+        parts.map(|part| part.iter_mut().map(changed).sum::<u64>()).sum()
     }
 
     fn color(&self, rgb: [f32; 3]) -> [f32; 3] {
         match self.repair {
-            Repair::Scale if self.greatest > 1.0 => rgb.map(|v| clipped(v / self.greatest)),
-            Repair::Clip | Repair::Scale => rgb.map(clipped),
+            Repair::Scale if self.greatest > 1.0 => rgb.map(|v| clamped(v / self.greatest)),
+            Repair::Clip | Repair::Scale => rgb.map(clamped),
             Repair::Nearest => nearest(rgb, self.table),
         }
     }
 }
 
-impl Repaired {
-    /// Both together.
-    fn with(self, other: Self) -> Self {
-        Self {
-            changed: self.changed + other.changed,
-            made_black: self.made_black + other.made_black,
-        }
-    }
-}
-
-/// The nearest value in 0..=1.
-fn clipped(value: f32) -> f32 {
+fn clamped(value: f32) -> f32 {
     value.clamp(0.0, 1.0)
 }
 
-/// The nearest color that some material shows, in 0..=1, as single precision holds it.
+/// The nearest reachable color in 0..=1, in single precision.
 ///
-/// Clipping may move it out of reach again; then it goes on straight towards the gray of its mean
-/// value, no further than it must.
+/// Clamping may make the nearest color unreachable again; it then moves towards the gray of its mean
+/// value as far as necessary.
 fn nearest(rgb: [f32; 3], table: &StandingTable) -> [f32; 3] {
-    if is_shown(rgb, table) && is_shown(rgb.map(clipped), table) {
-        return rgb.map(clipped);
+    if is_reachable(rgb, table) && is_reachable(rgb.map(clamped), table) {
+        return rgb.map(clamped);
     }
-    // Of a color within reach this is the color itself.
+    // For a reachable color this is the color itself.
     let found = table.standing(LinearRgb(rgb.map(f64::from))).fluorescence.color;
     let found = table.colorimetry().rgb_from_xyz(found).0.map(|v| v.clamp(0.0, 1.0));
     let gray = found.iter().sum::<f64>() / 3.0;
     let towards_gray = |share: f64| found.map(|v| to_single(v + share * (gray - v)));
-    let shown = |share: f64| is_shown(towards_gray(share), table);
-    towards_gray(if shown(OFF_THE_BORDER) { OFF_THE_BORDER } else { least_share(shown) })
-}
-
-/// About the least share of the distance to gray at which a color is shown; gray itself is.
-fn least_share(shown: impl Fn(f64) -> bool) -> f64 {
     let (mut outside, mut inside) = (OFF_THE_BORDER, 1.0);
-    for _ in 0..HALVINGS {
-        let middle = (outside + inside) / 2.0;
-        *(if shown(middle) { &mut inside } else { &mut outside }) = middle;
+    if is_reachable(towards_gray(outside), table) {
+        return towards_gray(outside);
     }
-    inside
+    for _ in 0..BISECTIONS {
+        let middle = (outside + inside) / 2.0;
+        let reachable = is_reachable(towards_gray(middle), table);
+        *(if reachable { &mut inside } else { &mut outside }) = middle;
+    }
+    towards_gray(inside)
 }
 
-fn is_shown(rgb: [f32; 3], table: &StandingTable) -> bool {
+fn is_reachable(rgb: [f32; 3], table: &StandingTable) -> bool {
     table.kind(LinearRgb(rgb.map(f64::from))) != StandingKind::Unreachable
 }
 
@@ -172,20 +136,21 @@ mod tests {
                 let mut rgb = texels.clone();
                 let found = repairer(repair, greatest_value(&rgb)).repair(&mut rgb);
                 prop_assert!(rgb.as_flattened().iter().all(|v| (0.0..=1.0).contains(v)));
-                let black = texels.iter().filter(|t| t.iter().any(|v| !v.is_finite())).count();
-                prop_assert_eq!(found.made_black, black as u64);
+                for (before, after) in texels.iter().zip(&rgb) {
+                    prop_assert!(before.iter().all(|v| v.is_finite()) || *after == [0.0; 3]);
+                }
                 let changed = texels.iter().zip(&rgb).filter(|(a, b)| a != b).count();
-                prop_assert_eq!(found.changed, changed as u64);
+                prop_assert_eq!(found, changed as u64);
                 let again = repairer(repair, greatest_value(&rgb)).repair(&mut rgb);
-                prop_assert_eq!(again, Repaired::default(), "{}", repair);
+                prop_assert_eq!(again, 0, "{}", repair);
             }
         }
 
         #[test]
-        fn the_nearest_is_shown_by_some_material(rgb in prop::array::uniform3(-0.5..3.0_f32)) {
+        fn the_nearest_is_reachable_by_some_material(rgb in prop::array::uniform3(-0.5..3.0_f32)) {
             let mut texel = [rgb];
             repairer(Repair::Nearest, 0.0).repair(&mut texel);
-            prop_assert!(is_shown(texel[0], table()), "{rgb:?} {texel:?}");
+            prop_assert!(is_reachable(texel[0], table()), "{rgb:?} {texel:?}");
         }
     }
 
@@ -195,7 +160,7 @@ mod tests {
         for &repair in Repair::ALL {
             let mut rgb = good;
             let found = repairer(repair, greatest_value(&rgb)).repair(&mut rgb);
-            assert_eq!((rgb, found), (good, Repaired::default()), "{repair}");
+            assert_eq!((rgb, found), (good, 0), "{repair}");
         }
     }
 
@@ -205,7 +170,7 @@ mod tests {
         let greatest = greatest_value(&rgb);
         let found = repairer(Repair::Scale, greatest).repair(&mut rgb);
         assert_eq!(rgb, [[0.5, 0.25, 0.125], [0.0; 3], [0.0, 1.0, 0.25]]);
-        assert_eq!(found, Repaired { changed: 3, made_black: 1 });
+        assert_eq!(found, 3);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Reflectance in bands, and re-radiation between them.
+//! The spectral form: reflectance in bands, and re-radiation between them.
 
 use upglow::{Bispectral, Cube, Interpolation, Model};
 use upglow_color::rounding::to_single;
@@ -11,7 +11,8 @@ use crate::exr::attribute::Attributes;
 use crate::exr::writer::Compression;
 use crate::spectral::channel::{BISPECTRAL_UNIT, BispectralUnit, SpectralChannel, rising_pairs};
 
-/// The blend of each texel, one channel for each band and each pair of bands that rises.
+/// Stores the blend of each texel: one channel per band, and one per pair of bands from a shorter to a
+/// longer wavelength.
 #[derive(Debug)]
 pub(super) struct SpectralMaker<'c> {
     cube: &'c Cube,
@@ -35,7 +36,7 @@ impl<'c> SpectralMaker<'c> {
         !matches!(self.cube.model(), Model::Reflectance)
     }
 
-    /// Numbers of the bands of each pair that rises, in the order of the channels.
+    /// Incident and outgoing band of each pair, in the order of the channels.
     fn pairs(&self) -> impl Iterator<Item = [usize; 2]> + use<> {
         rising_pairs(if self.is_bispectral() { self.grid.len() } else { 0 })
     }
@@ -59,7 +60,7 @@ impl Maker for SpectralMaker<'_> {
         attributes
     }
 
-    /// Blocks of one row: sixteen rows of 864 channels would take half a gigabyte at 16K.
+    /// Blocks of one row: sixteen rows of 864 channels would take half a gigabyte for 16,384 columns.
     fn compression(&self) -> Compression {
         Compression::Zips
     }

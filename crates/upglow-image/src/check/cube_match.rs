@@ -1,20 +1,20 @@
-//! How well a cube's materials show a picture.
+//! How well a cube's materials match a picture.
 
 use upglow::ColorTable;
 use upglow_color::{Colorimetry, LinearRgb, Xyz, ciede2000};
 
-/// How well a cube's mixtures show the texels in 0..=1.
+/// How well a cube's mixtures match the texels of a picture whose values are in 0..=1.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct CubeMatch {
-    /// The cube's file, as people know it.
+    /// The name of the cube's file.
     pub file: String,
-    /// Texels that the cube was asked for: those with all values in 0..=1.
+    /// Texels with all values in 0..=1.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub texels: u64,
-    /// Share of them shown within 1 ΔE00.
+    /// Share of them matched within 1 ΔE00, 0..=1.
     pub within_one: f64,
-    /// Share of them shown within 2 ΔE00.
+    /// Share of them matched within 2 ΔE00, 0..=1.
     pub within_two: f64,
     /// Mean ΔE00.
     pub mean_de2000: f64,
@@ -22,7 +22,7 @@ pub struct CubeMatch {
     pub greatest_de2000: f64,
 }
 
-/// Differences of parts of a picture, summed in whole numbers: their order does not matter.
+/// Sums of differences, as integers so that the order of addition does not matter.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct DifferenceSums {
     texels: u64,
@@ -32,7 +32,7 @@ pub(super) struct DifferenceSums {
     greatest: f64,
 }
 
-/// ΔE00 of a texel is summed in multiples of this: finer than the single precision of the cube.
+/// The unit of the sum of ΔE00: finer than the single precision of the cube.
 const UNIT: f64 = 1.0 / 16_777_216.0;
 
 impl DifferenceSums {
@@ -44,17 +44,22 @@ impl DifferenceSums {
         self.greatest = self.greatest.max(other.greatest);
     }
 
-    /// Asks for a run of texels.
-    pub(super) fn ask(&mut self, cube: &ColorTable, colorimetry: &Colorimetry, rgb: &[[f32; 3]]) {
-        let mut shown = vec![[0.0; 3]; rgb.len()];
-        cube.xyz(rgb, &mut shown).expect("there is room for each texel");
-        for (&asked, shown) in rgb.iter().zip(shown) {
-            // The table says "not a number" where it was not to be asked.
-            if !shown[0].is_nan() {
-                let asked = colorimetry.xyz_from_rgb(LinearRgb(asked.map(f64::from)));
-                let [asked, shown] = [asked, Xyz(shown.map(f64::from))];
-                let [asked, shown] = [asked, shown].map(|xyz| colorimetry.lab_from_xyz(xyz));
-                self.add(ciede2000(asked, shown));
+    /// Adds the differences of texels from the cube's mixtures.
+    pub(super) fn add_texels(
+        &mut self,
+        cube: &ColorTable,
+        colorimetry: &Colorimetry,
+        rgb: &[[f32; 3]],
+    ) {
+        let mut matched = vec![[0.0; 3]; rgb.len()];
+        cube.xyz(rgb, &mut matched).expect("there is room for each texel");
+        for (rgb, matched) in rgb.iter().zip(matched) {
+            // The table has NaN for colors outside 0..=1.
+            if !matched[0].is_nan() {
+                let target = colorimetry.xyz_from_rgb(LinearRgb(rgb.map(f64::from)));
+                let pair = [target, Xyz(matched.map(f64::from))];
+                let [target, matched] = pair.map(|xyz| colorimetry.lab_from_xyz(xyz));
+                self.add(ciede2000(target, matched));
             }
         }
     }
@@ -80,8 +85,8 @@ impl DifferenceSums {
     }
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "it is rounded first")]
-#[expect(clippy::cast_sign_loss, reason = "a difference is not negative")]
+#[expect(clippy::cast_possible_truncation, reason = "the value is rounded first")]
+#[expect(clippy::cast_sign_loss, reason = "color differences are not negative")]
 fn units(de2000: f64) -> u64 {
     (de2000 / UNIT).round() as u64
 }

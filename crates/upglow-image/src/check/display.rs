@@ -1,8 +1,8 @@
-//! Colors of the contract on a screen.
+//! Display of the contract's colors in sRGB.
 
 use upglow_color::{Colorimetry, Contract, Grid, Matrix3, RgbSpace, Xyz, srgb_encoded};
 
-/// Turns the contract's XYZ into sRGB: white is white.
+/// Converts the contract's XYZ to sRGB, with chromatic adaptation of the white.
 #[derive(Debug)]
 pub(super) struct Display {
     srgb_from_xyz: Matrix3,
@@ -24,23 +24,23 @@ impl Display {
         }
     }
 
-    /// The color in 8 bits; what sRGB cannot hold is cut off by channel.
+    /// The color in 8-bit sRGB, with each channel clamped.
     pub(super) fn srgb(&self, xyz: Xyz) -> [u8; 3] {
         (self.srgb_from_xyz * xyz.0).map(|v| byte(srgb_encoded(v.clamp(0.0, 1.0))))
     }
 
-    /// A color of the contract's RGB in 8 bits.
+    /// A color of the contract's RGB in 8-bit sRGB.
     pub(super) fn srgb_of_rgb(&self, rgb: [f64; 3]) -> [u8; 3] {
         self.srgb(Xyz(self.xyz_from_rgb * rgb))
     }
 
-    /// How bright a color of the contract's RGB looks: 0..=1, sRGB-encoded luminance.
+    /// The luminance of a color of the contract's RGB, sRGB-encoded, 0..=1.
     pub(super) fn brightness(&self, rgb: [f64; 3]) -> f64 {
         srgb_encoded((self.xyz_from_rgb * rgb)[1].clamp(0.0, 1.0))
     }
 }
 
-/// 0..=1 in 8 bits.
+/// Converts 0..=1 to 8 bits.
 #[expect(clippy::cast_possible_truncation, reason = "it is clamped and rounded first")]
 #[expect(clippy::cast_sign_loss, reason = "it is clamped and rounded first")]
 pub(super) fn byte(share: f64) -> u8 {

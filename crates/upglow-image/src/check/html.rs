@@ -1,4 +1,4 @@
-//! The page that shows what pictures need: one file with everything in it.
+//! The HTML page of a check, in a single file.
 
 mod style;
 mod text;
@@ -9,15 +9,15 @@ use base64::engine::general_purpose::STANDARD;
 use upglow_color::{Nearest, StandingKind};
 
 use self::style::STYLE;
-use self::text::{escaped, grouped, percent, percent_of, plural, value};
+use self::text::{escaped, grouped, percent, value};
 use super::cube_match::CubeMatch;
 use super::palette::{Heat, ramp_position};
 use super::raster::Raster;
 use super::report::{CheckReport, Flaw, WorstTexel};
 
 impl CheckReport {
-    /// A page of HTML about pictures: no scripts, nothing loaded from elsewhere, well-formed as XML.
-    /// Each picture prints on one sheet.
+    /// An HTML page about some pictures, without scripts or external resources, well-formed as XML. Each
+    /// picture prints on one sheet of paper.
     #[must_use]
     pub fn page(reports: &[Self]) -> String {
         let title = match reports {
@@ -73,38 +73,39 @@ fn article(index: usize, report: &CheckReport) -> String {
     )
 }
 
-/// What is true of the picture, in a few words.
+/// The result in one sentence.
 fn headline(report: &CheckReport) -> String {
     let counts = &report.counts;
-    let share = |part| percent(part, counts.texels);
+    let share = |part| percent(counts.share(part));
     let needs = share(counts.needs_fluorescence);
     match (counts.no_color, counts.unreachable, counts.needs_fluorescence) {
-        (0, 0, 0) => "A reflectance shows every texel.".into(),
-        (0, 0, _) => format!("{needs} of the texels need fluorescence; materials show them all."),
-        (0, unreachable, 0) => format!("No material shows {} of the texels.", share(unreachable)),
-        (0, unreachable, _) => {
-            format!(
-                "{needs} of the texels need fluorescence, no material shows {}.",
-                share(unreachable)
-            )
+        (0, 0, 0) => "Reflectances match every texel.".into(),
+        (0, 0, _) => {
+            format!("{needs} of the texels need fluorescence; materials match all texels.")
         }
-        (no_color, ..) => format!("{} no color.", plural(no_color, "texel is", "texels are")),
+        (0, unreachable, 0) => format!("No material matches {} of the texels.", share(unreachable)),
+        (0, unreachable, _) => {
+            let beyond = share(unreachable);
+            format!("{needs} of the texels need fluorescence; no material matches {beyond}.")
+        }
+        (1, ..) => "1 texel is NaN or infinite.".into(),
+        (no_color, ..) => format!("{} texels are NaN or infinite.", grouped(no_color)),
     }
 }
 
-/// What to do about it, in one sentence.
+/// Advice in one sentence.
 fn next(report: &CheckReport) -> &'static str {
     let counts = &report.counts;
     if counts.no_color > 0 {
-        "Find what wrote values that are no numbers (the first places are below), or make them black with <code>--repair</code>."
+        "Find the cause of the NaN or infinite values (the first texels are listed below), or make them black with <code>--repair</code>."
     } else if !counts.all_in_range() {
-        "Baking refuses values outside 0 to 1: correct them, or choose <code>--repair clip</code>, <code>scale</code> or <code>nearest</code>."
+        "Baking refuses values outside 0 to 1: correct them, or use <code>--repair clip</code>, <code>scale</code> or <code>nearest</code>."
     } else if counts.unreachable > 0 {
-        "Desaturate what is pink to purple in the map, or let <code>--repair nearest</code> move it to the nearest color that a material shows."
+        "Desaturate the areas that are pink to purple in the map, or let <code>--repair nearest</code> move them to the nearest color of a material."
     } else if counts.needs_fluorescence > 0 {
-        "Bake it with a cube that has dyes: without them, what is yellow to brown in the map comes out duller."
+        "Bake it with a cube that has dyes; without dyes, the areas that are yellow to brown in the map become less saturated."
     } else {
-        "Bake it: nothing in it needs fluorescence."
+        "Bake it with any cube: it needs no fluorescence."
     }
 }
 
@@ -112,21 +113,20 @@ fn next(report: &CheckReport) -> &'static str {
 fn kinds(report: &CheckReport) -> [(&'static str, &'static str, u64); 4] {
     let counts = &report.counts;
     [
-        ("reflectance", "a reflectance shows it", counts.reflectance),
+        ("reflectance", "matched by a reflectance", counts.reflectance),
         ("fluorescence", "needs fluorescence", counts.needs_fluorescence),
-        ("unreachable", "no material shows it", counts.unreachable),
-        ("no-color", "no color: not a number or infinite", counts.no_color),
+        ("unreachable", "matched by no material", counts.unreachable),
+        ("no-color", "NaN or infinite", counts.no_color),
     ]
 }
 
 fn bar(report: &CheckReport) -> String {
-    let texels = report.counts.texels;
     let part = |(class, name, count): (&str, &str, u64)| {
-        // At least a hair of each kind that is there.
-        let width = (100.0 * count as f64 / texels as f64).max(0.4);
+        // Each kind that occurs has a visible width.
+        let width = (100.0 * report.counts.share(count)).max(0.4);
         format!(
             "<span class=\"{class}\" style=\"flex-grow:{width:.3}\" title=\"{name}: {}\"></span>",
-            percent(count, texels)
+            percent(report.counts.share(count))
         )
     };
     let parts: String = kinds(report).into_iter().filter(|kind| kind.2 > 0).map(part).collect();
@@ -134,11 +134,10 @@ fn bar(report: &CheckReport) -> String {
 }
 
 fn shares(report: &CheckReport) -> String {
-    let texels = report.counts.texels;
     let item = |(class, name, count): (&str, &str, u64)| {
         format!(
             "<li><span class=\"key {class}\"></span><b>{}</b> {name} <small>{}</small></li>\n",
-            percent(count, texels),
+            percent(report.counts.share(count)),
             grouped(count)
         )
     };
@@ -149,8 +148,8 @@ fn shares(report: &CheckReport) -> String {
 
 fn pictures(report: &CheckReport) -> String {
     format!(
-        "<div class=\"pictures\">\n<figure>{}<figcaption>The picture, as sRGB shows it</figcaption>\
-         </figure>\n<figure>{}<figcaption>What it needs; ΔE00 of the furthest texel</figcaption>{}\
+        "<div class=\"pictures\">\n<figure>{}<figcaption>The picture in sRGB</figcaption>\
+         </figure>\n<figure>{}<figcaption>Needed materials; ΔE00 of the furthest texel</figcaption>{}\
          </figure>\n</div>\n",
         image(&report.thumbnail, "the picture"),
         image(&report.heat, "the heat map"),
@@ -158,13 +157,13 @@ fn pictures(report: &CheckReport) -> String {
     )
 }
 
-/// Pictures narrower than this are shown with sharp texels.
+/// Pictures narrower than this are enlarged without smoothing.
 const FEW_PIXELS: u32 = 256;
 
 fn image(raster: &Raster, name: &str) -> String {
     let data = STANDARD.encode(raster.to_png());
-    let class = if raster.width() < FEW_PIXELS { " class=\"texels\"" } else { "" };
-    let (width, height) = (raster.width(), raster.height());
+    let class = if raster.width < FEW_PIXELS { " class=\"texels\"" } else { "" };
+    let (width, height) = (raster.width, raster.height);
     format!(
         "<img{class} width=\"{width}\" height=\"{height}\" alt=\"{name}\" \
          src=\"data:image/png;base64,{data}\"/>"
@@ -177,7 +176,7 @@ fn legend(report: &CheckReport) -> String {
     rows += &ramp("beyond any material", Heat::Unreachable);
     rows += "<div class=\"ramp plain\"><span>a reflectance</span><i class=\"gray\"></i></div>\n";
     if counts.no_color > 0 {
-        rows += "<div class=\"ramp plain\"><span>no color</span><i class=\"no-color\"></i></div>\n";
+        rows += "<div class=\"ramp plain\"><span>NaN or infinite</span><i class=\"no-color\"></i></div>\n";
     }
     format!("<div class=\"legend\">\n{rows}</div>")
 }
@@ -186,7 +185,7 @@ fn legend(report: &CheckReport) -> String {
 const TICKS: [f64; 4] = [1.0, 3.0, 10.0, 30.0];
 
 fn ramp(name: &str, heat: fn(f64) -> Heat) -> String {
-    // Enough straight lines to hide that the ramp's are straight in another scale.
+    // Enough stops to approximate a ramp that is linear in another scale.
     let stops = (0..=16).map(|i| 30.0_f64.ln_1p() * f64::from(i) / 16.0).map(f64::exp_m1);
     let stop =
         |de2000| format!(",{} {:.1}%", hex(heat(de2000).color(0.0)), 100.0 * ramp_position(de2000));
@@ -225,7 +224,7 @@ fn flaws(report: &CheckReport) -> String {
     let found = Flaw::ALL.into_iter().filter(|&flaw| report.counts.of(flaw) > 0);
     format!(
         "<h3>Values out of range</h3>\n<table>\n<thead><tr><th>value</th><th class=\"number\">texels\
-         </th><th>the first, as (column, row): red, green, blue</th></tr></thead>\n\
+         </th><th>the first texels, as (column, row): red, green, blue</th></tr></thead>\n\
          <tbody>\n{}</tbody>\n</table>\n",
         found.map(row).collect::<String>()
     )
@@ -238,20 +237,20 @@ fn worst(texels: &[WorstTexel]) -> String {
     let rows: String = texels.iter().map(worst_row).collect();
     format!(
         "<h3>The worst texels</h3>\n<table>\n<thead><tr><th>column, row</th><th>red, green, blue</th>\
-         <th>asked for</th><th>nearest reflectance</th><th>nearest of any material</th></tr></thead>\n\
+         <th>color</th><th>nearest reflectance</th><th>nearest of any material</th></tr></thead>\n\
          <tbody>\n{rows}</tbody>\n</table>\n\
-         <p class=\"note\">Swatches are cut off where sRGB ends: colors that differ may look alike. \
-         The number beside one is its ΔE00 from the color asked for.</p>\n"
+         <p class=\"note\">Swatches are clipped to sRGB, so different colors may look alike. \
+         The number beside a swatch is its ΔE00 from the texel's color.</p>\n"
     )
 }
 
 fn worst_row(texel: &WorstTexel) -> String {
     let [r, g, b] = texel.rgb.map(value);
-    let [asked, reflectance, any] = texel.swatches.map(hex);
+    let [own, reflectance, any] = texel.swatches.map(hex);
     let swatch =
         |color: &str| format!("<span class=\"swatch\" style=\"background:{color}\"></span>");
     let beside = |nearest: &Nearest| match nearest.distance {
-        0.0 => "shown".into(),
+        0.0 => "matched".into(),
         _ => format!("{:.2}", nearest.de2000),
     };
     let class = match texel.standing.kind {
@@ -263,7 +262,7 @@ fn worst_row(texel: &WorstTexel) -> String {
          <td>{}{}</td><td>{}{}</td></tr>\n",
         texel.x,
         texel.y,
-        swatch(&asked),
+        swatch(&own),
         swatch(&reflectance),
         beside(&texel.standing.reflectance),
         swatch(&any),
@@ -274,13 +273,13 @@ fn worst_row(texel: &WorstTexel) -> String {
 fn cube_match(found: &CubeMatch) -> String {
     let CubeMatch { file, texels, within_one, within_two, mean_de2000, greatest_de2000 } = found;
     format!(
-        "<h3>What {} makes of it</h3>\n<p>Of {} texels in range its blend shows <b>{}</b> within 1 \
-         ΔE00 and <b>{}</b> within 2; the mean is {mean_de2000:.2}, the greatest \
+        "<h3>Match with {}</h3>\n<p>Of {} texels in range its blends match <b>{}</b> within 1 ΔE00 \
+         and <b>{}</b> within 2; the mean is {mean_de2000:.2}, the greatest \
          {greatest_de2000:.2}.</p>\n",
         escaped(file),
         grouped(*texels),
-        percent_of(*within_one),
-        percent_of(*within_two),
+        percent(*within_one),
+        percent(*within_two),
     )
 }
 

@@ -1,10 +1,10 @@
-//! What pictures are checked against.
+//! The colors that pictures are checked against.
 
 use upglow::{ColorTable, Cube};
 use upglow_color::Contract;
 use upglow_fit::StandingTable;
 
-/// What materials show under a contract, and, if there is a cube, what its materials show.
+/// The colors that materials match under a contract, and those of a cube's mixtures if there is one.
 #[derive(Debug)]
 pub(super) struct Limits {
     pub(super) contract: Contract,
@@ -13,7 +13,7 @@ pub(super) struct Limits {
 }
 
 impl Limits {
-    /// The limits of a contract; `cube`, if there is one, was built for it.
+    /// The limits of a contract, which is also that of `cube`.
     pub(super) fn new(contract: Contract, cube: Option<&Cube>) -> Self {
         let table = StandingTable::new(&contract);
         let cube = cube.map(|cube| cube.color_table(table.colorimetry()));

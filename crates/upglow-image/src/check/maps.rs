@@ -1,6 +1,4 @@
-//! The heat map and the thumbnail, gathered while rows pass.
-
-use std::ops::Range;
+//! The heat map and the thumbnail, which are accumulated while rows are read.
 
 use rayon::prelude::*;
 use upglow_color::rounding::to_single;
@@ -13,11 +11,11 @@ use super::limits::Limits;
 use super::palette::Heat;
 use super::raster::Raster;
 
-/// Blocks of a picture, each a pixel of the maps.
+/// Blocks of a picture; each becomes a pixel of the maps.
 #[derive(Debug)]
 pub(super) struct Maps {
     width: usize,
-    /// Texels along a side of a block.
+    /// Texels per side of a block.
     side: usize,
     /// Blocks in a row.
     columns: usize,
@@ -25,10 +23,10 @@ pub(super) struct Maps {
     blocks: Vec<Block>,
 }
 
-/// What is known of a block.
+/// The findings about a block.
 #[derive(Clone, Copy, Debug, Default)]
 struct Block {
-    /// Sums over the texels that are colors, in multiples of [`UNIT`].
+    /// Sums over the texels with finite values, in multiples of [`UNIT`].
     sum: [u64; 3],
     colors: u32,
     worst: Heat,
@@ -37,22 +35,11 @@ struct Block {
 /// Greatest width and height of the maps.
 const LONGER_SIDE: usize = 1024;
 
-/// Values are summed in multiples of this: finer than 8 bits of sRGB are at black.
+/// The unit of sums: finer than the steps of 8-bit sRGB near black.
 const UNIT: f64 = 1.0 / 1_048_576.0;
 
-/// Blocks side by side that one core works on at a time.
+/// Horizontally adjacent blocks per parallel task.
 const BLOCKS_TOGETHER: usize = 64;
-
-/// Some blocks of a row, and the part of a band that falls in them.
-pub(super) struct Tile<'a> {
-    blocks: &'a mut [Block],
-    side: usize,
-    rows: Range<usize>,
-    columns: Range<usize>,
-    band: &'a [[f32; 3]],
-    first_row: usize,
-    width: usize,
-}
 
 impl Maps {
     pub(super) fn new([width, height]: [usize; 2]) -> Self {
@@ -61,25 +48,30 @@ impl Maps {
         Self { width, side, columns, blocks: vec![Block::default(); columns * rows] }
     }
 
-    /// The blocks that a band falls in, for many cores.
-    pub(super) fn tiles<'a>(
-        &'a mut self,
+    /// Checks the texels of a band of whole rows.
+    pub(super) fn check(
+        &mut self,
         first_row: usize,
-        band: &'a [[f32; 3]],
-    ) -> impl ParallelIterator<Item = Tile<'a>> {
+        band: &[[f32; 3]],
+        limits: &Limits,
+    ) -> Findings {
         let Self { width, side, columns, .. } = *self;
         let rows = first_row..first_row + band.len() / width;
         let block_rows = rows.start / side..rows.end.div_ceil(side);
         let touched = block_rows.start * columns..block_rows.end * columns;
-        self.blocks[touched].par_chunks_mut(columns).enumerate().flat_map(move |(i, row)| {
-            let top = (block_rows.start + i) * side;
+        let block_rows = self.blocks[touched].par_chunks_mut(columns).enumerate();
+        let found = block_rows.flat_map(|(i, row)| {
+            let top = (rows.start / side + i) * side;
             let rows = top.max(rows.start)..(top + side).min(rows.end);
             row.par_chunks_mut(BLOCKS_TOGETHER).enumerate().map(move |(j, blocks)| {
                 let left = j * BLOCKS_TOGETHER * side;
-                let columns = left..(left + blocks.len() * side).min(width);
-                Tile { blocks, side, rows: rows.clone(), columns, band, first_row, width }
+                let right = (left + blocks.len() * side).min(width);
+                let texels = |y: usize| &band[(y - first_row) * width..][left..right];
+                let rows = rows.clone().map(|y| (y, texels(y)));
+                check_blocks(blocks, side, left, rows, limits)
             })
-        })
+        });
+        found.reduce(Findings::default, Findings::with)
     }
 
     pub(super) fn heat(&self, display: &Display) -> Raster {
@@ -95,33 +87,32 @@ impl Maps {
     }
 }
 
-impl Tile<'_> {
-    /// Finds what its texels need.
-    pub(super) fn check(self, limits: &Limits) -> Findings {
-        let Self { blocks, side, rows, columns, band, first_row, width } = self;
-        let mut texel_check = TexelCheck { limits, last: None, findings: Findings::default() };
-        for y in rows {
-            let row = (y - first_row) * width;
-            let texels = &band[row + columns.start..row + columns.end];
-            for (i, (part, block)) in texels.chunks(side).zip(blocks.iter_mut()).enumerate() {
-                let left = columns.start + i * side;
-                for (dx, &rgb) in part.iter().enumerate() {
-                    texel_check.add([left + dx, y], rgb, block);
-                }
-            }
-            if let Some(cube) = &limits.cube {
-                let differences = &mut texel_check.findings.differences;
-                differences.ask(cube, limits.table.colorimetry(), texels);
-            }
+/// Checks horizontally adjacent blocks, of which `rows` has numbers and texels. The first column is
+/// `left`.
+fn check_blocks<'b>(
+    blocks: &mut [Block],
+    side: usize,
+    left: usize,
+    rows: impl Iterator<Item = (usize, &'b [[f32; 3]])>,
+    limits: &Limits,
+) -> Findings {
+    let mut texel_check = TexelCheck { limits, last: None, findings: Findings::default() };
+    for (y, texels) in rows {
+        for (x, &rgb) in texels.iter().enumerate() {
+            texel_check.add([left + x, y], rgb, &mut blocks[x / side]);
         }
-        texel_check.findings
+        if let Some(cube) = &limits.cube {
+            let differences = &mut texel_check.findings.differences;
+            differences.add_texels(cube, limits.table.colorimetry(), texels);
+        }
     }
+    texel_check.findings
 }
 
 /// Checks one texel after another.
 struct TexelCheck<'a> {
     limits: &'a Limits,
-    /// The last color, for pictures are full of runs.
+    /// The previous color: pictures contain many runs of the same color.
     last: Option<([f32; 3], Estimate)>,
     findings: Findings,
 }
@@ -157,7 +148,7 @@ impl Block {
     fn add(&mut self, rgb: [f32; 3], found: &Estimate) {
         (0..3).for_each(|k| self.sum[k] += units(rgb[k]));
         self.colors += 1;
-        // Single precision is plenty for a color.
+        // Single precision suffices for a pixel's color.
         let de2000 = f64::from(to_single(found.de2000));
         let worst = match found.kind {
             StandingKind::Reflectance => return,
@@ -174,9 +165,9 @@ impl Block {
     }
 }
 
-/// A value as a screen shows it, 0..=1, in whole multiples of [`UNIT`].
-#[expect(clippy::cast_possible_truncation, reason = "the fraction is meant to go")]
-#[expect(clippy::cast_sign_loss, reason = "it is clamped first")]
+/// A value clamped to 0..=1, in multiples of [`UNIT`].
+#[expect(clippy::cast_possible_truncation, reason = "the fraction is dropped on purpose")]
+#[expect(clippy::cast_sign_loss, reason = "the value is clamped first")]
 fn units(value: f32) -> u64 {
     (f64::from(value.clamp(0.0, 1.0)) / UNIT) as u64
 }

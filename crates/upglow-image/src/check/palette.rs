@@ -1,13 +1,12 @@
-//! The colors of the heat map: gray, then yellow to brown, then pink to purple; each ramp also falls
-//! in lightness, so it reads without hue.
+//! The colors of the heat map: gray, then yellow to brown, then pink to purple. Each ramp also decreases
+//! in lightness, so that it can be read without hue.
 
 use super::display::byte;
 
-/// What a pixel of the heat map says: the worst that its texels are, the kind first, then the
-/// difference.
+/// The meaning of a pixel of the heat map: the worst of its texels, by kind and then by difference.
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 pub(super) enum Heat {
-    /// A reflectance shows all of it.
+    /// Reflectances match all texels.
     #[default]
     Reflectance,
     /// The furthest texel is this many ΔE00 beyond reflectance.
@@ -18,11 +17,11 @@ pub(super) enum Heat {
     NoColor,
 }
 
-/// ΔE00 at which the ramps end: colors this far apart have nothing in common. A greater one leaves
-/// the usual few ΔE00 all alike, a smaller one whole pictures at the end.
+/// ΔE00 at which the ramps end. With a greater value the usual differences of a few ΔE00 would look
+/// alike; with a smaller one whole pictures would be at the end.
 const FULL_DE2000: f64 = 30.0;
 
-/// Black and white of the gray picture: apart from the ends of the ramps, and from the page.
+/// Black and white of the gray picture, which differ from the ends of the ramps and from the page.
 const GRAYS: [f64; 2] = [0.16, 0.82];
 
 const FLUORESCENCE: [[u8; 3]; 4] = [[255, 236, 150], [253, 180, 60], [232, 98, 12], [140, 45, 4]];
@@ -30,7 +29,7 @@ const UNREACHABLE: [[u8; 3]; 3] = [[245, 120, 215], [196, 24, 140], [88, 10, 94]
 const NO_COLOR: [u8; 3] = [0, 200, 230];
 
 impl Heat {
-    /// The color of the pixel; what a reflectance shows is gray, by how bright it is, 0..=1.
+    /// The color of the pixel. Reflectances are gray, of the given brightness, 0..=1.
     pub(super) fn color(self, bright: f64) -> [u8; 3] {
         match self {
             Self::Reflectance => [byte(GRAYS[0] + (GRAYS[1] - GRAYS[0]) * bright); 3],
@@ -41,12 +40,12 @@ impl Heat {
     }
 }
 
-/// Where on a ramp a difference is, 0..=1: each step looks like the same factor.
+/// The position of a difference on a ramp, 0..=1, on a logarithmic scale.
 pub(super) fn ramp_position(de2000: f64) -> f64 {
     (de2000.ln_1p() / FULL_DE2000.ln_1p()).clamp(0.0, 1.0)
 }
 
-/// A color of a ramp, by straight lines between its stops.
+/// A color of a ramp, interpolated linearly between its stops.
 fn ramp(stops: &[[u8; 3]], share: f64) -> [u8; 3] {
     let last = stops.len() - 1;
     let position = share * last as f64;
@@ -65,7 +64,7 @@ mod tests {
     }
 
     #[test]
-    fn each_ramp_falls_in_lightness() {
+    fn each_ramp_decreases_in_lightness() {
         for heat in [Heat::Fluorescence, Heat::Unreachable] {
             let mut lumas = (0..=60).map(|i| luma(heat(f64::from(i) / 2.0).color(0.0)));
             let first = lumas.next().unwrap();

@@ -1,43 +1,60 @@
-//! The first few of many, whatever the order they come in.
+//! The worst texels of a picture.
 
 use std::cmp::Ordering;
 
-/// Keeps the `N` items that come first, at most one of each key.
+use upglow_color::StandingKind;
+
+/// Steps from 0 to the largest channel: colors whose channels round to the same steps, and whose
+/// largest channels are in the same octave, are alike. With more steps, a gradient of one hue fills the
+/// list; with fewer, one texel stands for too many others.
+const STEPS: f32 = 4.0;
+
+/// A texel that may be among the worst.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Candidate {
+    pub(super) x: usize,
+    pub(super) y: usize,
+    pub(super) rgb: [f32; 3],
+    pub(super) kind: StandingKind,
+    /// Estimated distance beyond the colors of materials, or beyond those of reflectances.
+    pub(super) distance: f64,
+}
+
+impl Candidate {
+    /// The same for colors that are alike.
+    fn likeness(&self) -> [u32; 4] {
+        let largest = self.rgb.iter().fold(f32::MIN_POSITIVE, |m, v| m.max(v.abs()));
+        let octave = largest.to_bits() >> (f32::MANTISSA_DIGITS - 1);
+        // Adding 0 turns −0 into 0.
+        let [r, g, b] = self.rgb.map(|v| ((v / largest * STEPS).round() + 0.0).to_bits());
+        [octave, r, g, b]
+    }
+
+    /// `Less` for the worse of two texels. `Equal` only for the same texel.
+    fn order(&self, other: &Self) -> Ordering {
+        let worse = other.kind.cmp(&self.kind).then(other.distance.total_cmp(&self.distance));
+        worse.then((self.y, self.x).cmp(&(other.y, other.x)))
+    }
+}
+
+/// The `N` worst candidates, of which no two are alike.
 ///
-/// Joining rankings of parts gives the ranking of the whole, in any order and for any parts.
-#[derive(Clone, Debug)]
-pub(super) struct Ranking<T, const N: usize> {
-    found: Vec<T>,
+/// Joining the rankings of the parts of a picture gives the ranking of the whole, in any order and for
+/// any division into parts.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Ranking<const N: usize> {
+    /// From the worst on.
+    pub(super) found: Vec<Candidate>,
 }
 
-/// What comes first, and what counts as the same.
-pub(super) trait Ranked {
-    type Key: PartialEq;
-
-    fn key(&self) -> Self::Key;
-
-    /// `Less` comes first. Two items are equal only if they are one.
-    fn order(&self, other: &Self) -> Ordering;
-}
-
-impl<T, const N: usize> Default for Ranking<T, N> {
-    fn default() -> Self {
-        Self { found: Vec::new() }
-    }
-}
-
-impl<T: Ranked, const N: usize> Ranking<T, N> {
-    pub(super) fn found(&self) -> &[T] {
-        &self.found
-    }
-
-    pub(super) fn add(&mut self, item: T) {
-        let too_late = |last: &T| last.order(&item) != Ordering::Greater;
+impl<const N: usize> Ranking<N> {
+    pub(super) fn add(&mut self, item: Candidate) {
+        let too_late = |last: &Candidate| last.order(&item) != Ordering::Greater;
         if self.found.len() == N && self.found.last().is_some_and(too_late) {
             return;
         }
-        let key = item.key();
-        if let Some(twin) = self.found.iter().position(|other| other.key() == key) {
+        let likeness = item.likeness();
+        if let Some(twin) = self.found.iter().position(|other| other.likeness() == likeness) {
             if too_late(&self.found[twin]) {
                 return;
             }
@@ -58,47 +75,39 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    struct Item(u32, u8);
-
-    impl Ranked for Item {
-        type Key = u8;
-
-        fn key(&self) -> u8 {
-            self.1
-        }
-
-        fn order(&self, other: &Self) -> Ordering {
-            self.0.cmp(&other.0)
-        }
-    }
-
     proptest! {
         #[test]
         fn parts_join_to_the_ranking_of_the_whole(
-            numbers in prop::collection::vec(0..1000_u32, 0..200),
-            keys in prop::collection::vec(0..9_u8, 200),
+            distances in prop::collection::vec(0..50_u32, 0..200),
+            colors in prop::collection::vec(0..9_u8, 200),
             cut in 0..200_usize,
         ) {
-            let items: Vec<Item> = numbers
+            let items: Vec<Candidate> = distances
                 .iter()
+                .zip(&colors)
                 .enumerate()
-                .map(|(i, n)| Item(n * 200 + u32::try_from(i).unwrap(), keys[i]))
+                .map(|(x, (&distance, &color))| Candidate {
+                    x,
+                    y: 0,
+                    rgb: [f32::from(color % 3) / 2.0, f32::from(color / 3) / 2.0, 1.0],
+                    kind: StandingKind::Unreachable,
+                    distance: f64::from(distance),
+                })
                 .collect();
             let (first, second) = items.split_at(cut.min(items.len()));
-            let rank = |items: &[Item]| {
-                let mut ranking = Ranking::<Item, 4>::default();
+            let rank = |items: &[Candidate]| {
+                let mut ranking = Ranking::<4>::default();
                 items.iter().for_each(|item| ranking.add(*item));
                 ranking
             };
             let mut joined = rank(second);
             joined.join(rank(first));
             let mut sorted = items.clone();
-            sorted.sort_by_key(|item| item.0);
+            sorted.sort_by(|a, b| b.distance.total_cmp(&a.distance).then(a.x.cmp(&b.x)));
             let mut seen = Vec::new();
-            sorted.retain(|item| !seen.contains(&item.1) && { seen.push(item.1); true });
+            sorted.retain(|item| !seen.contains(&item.rgb) && { seen.push(item.rgb); true });
             sorted.truncate(4);
-            prop_assert_eq!(joined.found(), &sorted[..]);
+            prop_assert_eq!(joined.found, sorted);
         }
     }
 }

@@ -1,10 +1,10 @@
-//! A small picture for people.
+//! A small picture of the report.
 
 /// 8-bit sRGB, row by row from the top.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Raster {
-    width: u32,
-    height: u32,
+    pub(super) width: u32,
+    pub(super) height: u32,
     /// `[row][column]`, red, green, blue.
     pub(super) pixels: Vec<[u8; 3]>,
 }
@@ -13,18 +13,8 @@ impl Raster {
     /// Rows of `width` pixels.
     pub(super) fn new(width: usize, pixels: Vec<[u8; 3]>) -> Self {
         let height = pixels.len() / width;
-        let side = |n: usize| u32::try_from(n).expect("a raster is at most a thousand pixels wide");
+        let side = |n: usize| u32::try_from(n).expect("a raster has at most 1024 pixels per side");
         Self { width: side(width), height: side(height), pixels }
-    }
-
-    /// Pixels in a row.
-    pub(super) fn width(&self) -> u32 {
-        self.width
-    }
-
-    /// Rows.
-    pub(super) fn height(&self) -> u32 {
-        self.height
     }
 
     /// The picture as a PNG file.
@@ -37,7 +27,7 @@ impl Raster {
         let written = encoder
             .write_header()
             .and_then(|mut writer| writer.write_image_data(self.pixels.as_flattened()));
-        written.expect("a picture with pixels is written to memory");
+        written.expect("writing to memory cannot fail");
         bytes
     }
 }

@@ -1,4 +1,4 @@
-//! What a check finds, as reports and pages say it.
+//! The report of a check.
 
 use std::fmt;
 
@@ -7,11 +7,11 @@ use upglow_color::{Standing, StandingKind};
 use super::cube_match::CubeMatch;
 use super::raster::Raster;
 
-/// What a picture asks of materials.
+/// Which materials a picture needs.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct CheckReport {
-    /// The picture's file, as people know it.
+    /// The name of the picture's file.
     pub file: String,
     /// Texels in a row.
     pub width: usize,
@@ -19,9 +19,9 @@ pub struct CheckReport {
     pub height: usize,
     /// The RGB space that the picture was checked in: its own, or the cube's.
     pub rgb_space: String,
-    /// The light that it is seen under.
+    /// The light under which materials must match it.
     pub illuminant: String,
-    /// How many texels need what, and how many have values that no cube holds.
+    /// Numbers of texels of each kind.
     #[cfg_attr(feature = "serde", serde(flatten))]
     pub counts: Counts,
     /// The first texels of each flaw, in reading order.
@@ -29,39 +29,40 @@ pub struct CheckReport {
     /// The texels furthest beyond any material, then furthest beyond reflectance; at most
     /// [`Checker::WORST`](crate::Checker::WORST), no two of nearly the same color.
     pub worst: Vec<WorstTexel>,
-    /// How well a cube's materials show the picture, if there is a cube.
+    /// How well a cube's materials match the picture, if there is a cube.
     pub cube: Option<CubeMatch>,
-    /// Where the picture needs what.
+    /// The heat map.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(super) heat: Raster,
-    /// The picture as sRGB shows it.
+    /// The picture in sRGB, reduced.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(super) thumbnail: Raster,
 }
 
 impl CheckReport {
-    /// The heat map of what the picture needs, as a PNG file.
+    /// The heat map, as a PNG file: gray where reflectances match the picture, yellow to brown where it
+    /// needs fluorescence, pink to purple where no material matches it, cyan for NaN and infinite values.
     #[must_use]
     pub fn heat_map_png(&self) -> Vec<u8> {
         self.heat.to_png()
     }
 }
 
-/// How many texels are what.
+/// Numbers of texels of each kind.
 ///
-/// The first three and those with a value that is NaN or infinite add up to all texels. The
-/// last four count texels with such a value in any channel: one texel may count in more than one.
+/// `reflectance`, `needs_fluorescence`, `unreachable` and `no_color` add up to all texels. A texel may
+/// have several flaws.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Texels.
+    /// All texels.
     pub texels: u64,
-    /// Some reflectance shows them.
+    /// Some reflectance matches them.
     pub reflectance: u64,
-    /// No reflectance, but some fluorescent material shows them.
+    /// No reflectance matches them, but some fluorescent material does.
     pub needs_fluorescence: u64,
-    /// No material shows them.
+    /// No material matches them.
     pub unreachable: u64,
-    /// Not colors: a value is NaN or infinite.
+    /// A value is NaN or infinite.
     pub no_color: u64,
     /// Texels with each flaw, in the order of [`Flaw::ALL`].
     flawed: [u64; Flaw::ALL.len()],
@@ -78,7 +79,7 @@ impl Counts {
         self.flawed == [0; Flaw::ALL.len()]
     }
 
-    /// These texels as a share of all.
+    /// `part` texels as a share of all, 0..=1.
     pub fn share(&self, part: u64) -> f64 {
         part as f64 / self.texels as f64
     }
@@ -88,7 +89,7 @@ impl Counts {
         self.flawed[flaw as usize] += 1;
     }
 
-    /// Counts a texel by what it takes to show it; `None` for one that is not a color.
+    /// Counts a texel by the material it needs; `None` if a value is NaN or infinite.
     pub(super) fn add(&mut self, kind: Option<StandingKind>) {
         self.texels += 1;
         *match kind {
@@ -109,7 +110,7 @@ impl Counts {
     }
 }
 
-/// Kinds of materials as shares of all texels, then counts.
+/// Serialized as shares of the kinds of materials, then counts of flaws.
 #[cfg(feature = "serde")]
 impl serde::Serialize for Counts {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -128,7 +129,7 @@ impl serde::Serialize for Counts {
     }
 }
 
-/// A value that is no component of a color in a cube.
+/// Why a value is not in 0..=1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum Flaw {
@@ -150,7 +151,7 @@ impl Flaw {
     /// Every flaw.
     pub const ALL: [Self; 4] = [Self::AboveOne, Self::Negative, Self::NotANumber, Self::Infinite];
 
-    /// Whether a channel of `rgb` has it.
+    /// Whether a channel of `rgb` has this flaw.
     pub fn is_in(self, rgb: [f32; 3]) -> bool {
         rgb.iter().any(|&v| match self {
             Self::AboveOne => v > 1.0 && v.is_finite(),
@@ -176,7 +177,7 @@ impl fmt::Display for Flaw {
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct FlawedTexel {
-    /// What is wrong with it.
+    /// The flaw.
     pub flaw: Flaw,
     /// Column, from 0 at the left.
     pub x: usize,
@@ -186,7 +187,7 @@ pub struct FlawedTexel {
     pub rgb: [f32; 3],
 }
 
-/// Two are equal if they have the same bits: a value may be NaN.
+/// Compares the bits of the values, which may be NaN.
 impl PartialEq for FlawedTexel {
     fn eq(&self, other: &Self) -> bool {
         let bits = |texel: &Self| texel.rgb.map(f32::to_bits);
@@ -194,7 +195,7 @@ impl PartialEq for FlawedTexel {
     }
 }
 
-/// A texel that a reflectance does not show.
+/// A texel that no reflectance matches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WorstTexel {
     /// Column, from 0 at the left.
@@ -203,14 +204,14 @@ pub struct WorstTexel {
     pub y: usize,
     /// Its color, linear RGB of the contract's space.
     pub rgb: [f32; 3],
-    /// What it takes to show it, and how far it is from what materials show.
+    /// The kind of material it needs, and its distances from the colors of materials.
     pub standing: Standing,
-    /// The color asked for, the nearest of a reflectance, and the nearest of any material, in sRGB.
+    /// The texel's color, the nearest of a reflectance, and the nearest of any material, in sRGB.
     pub(super) swatches: [[u8; 3]; 3],
 }
 
 impl WorstTexel {
-    /// What it takes to show the color, in words.
+    /// The kind of material that the color needs, in words.
     pub fn needs(&self) -> &'static str {
         match self.standing.kind {
             StandingKind::Reflectance => "reflectance",

@@ -5,114 +5,63 @@ use std::collections::BTreeMap;
 use upglow_color::RgbSpace;
 use upglow_color::rounding::to_single;
 
-/// The attributes of one image, by name; a file states each once, sorted.
+/// The attributes of one image, by name: a file holds each once.
 pub(crate) type Attributes = BTreeMap<String, Attribute>;
 
-/// The value of an attribute.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Attribute {
-    /// `string`: text; OpenEXR states no encoding, this program reads and writes UTF-8.
-    Text(String),
-    /// `float`.
-    Float(f32),
-    /// `double`.
-    Double(f64),
-    /// `int`.
-    Int(i32),
-    /// `v2f`.
-    Float2([f32; 2]),
-    /// `v3f`.
-    Float3([f32; 3]),
-    /// `chromaticities`: x, y of red, green, blue, white.
-    Chromaticities([[f32; 2]; 4]),
-    /// A type that this program passes on unread.
-    Other {
-        /// Name of the type.
-        kind: String,
-        /// The value, as the file holds it.
-        bytes: Vec<u8>,
-    },
+/// The value of an attribute: the name of its type, and its bytes as a file holds them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Attribute {
+    pub(crate) kind: String,
+    pub(crate) bytes: Vec<u8>,
 }
+
+/// Types of fixed length among those that pictures commonly have, and their lengths, bytes.
+const LENGTHS: [(&str, usize); 6] =
+    [("chromaticities", 32), ("double", 8), ("float", 4), ("int", 4), ("v2f", 8), ("v3f", 12)];
 
 impl Attribute {
-    /// The name that OpenEXR gives this type.
-    pub(crate) fn kind(&self) -> &str {
-        match self {
-            Self::Text(_) => "string",
-            Self::Float(_) => "float",
-            Self::Double(_) => "double",
-            Self::Int(_) => "int",
-            Self::Float2(_) => "v2f",
-            Self::Float3(_) => "v3f",
-            Self::Chromaticities(_) => "chromaticities",
-            Self::Other { kind, .. } => kind,
-        }
+    pub(crate) fn new(kind: &str, bytes: Vec<u8>) -> Self {
+        Self { kind: kind.into(), bytes }
     }
 
-    /// The text, if it is one.
+    /// An attribute of single-precision numbers.
+    pub(crate) fn singles(kind: &str, values: &[f32]) -> Self {
+        Self::new(kind, values.iter().flat_map(|v| v.to_le_bytes()).collect())
+    }
+
+    /// Whether a value of this type can have this length.
+    pub(crate) fn has_valid_length(&self) -> bool {
+        LENGTHS.iter().all(|(kind, length)| self.kind != *kind || self.bytes.len() == *length)
+    }
+
+    /// The bytes, if the attribute is of this type.
+    pub(crate) fn of_kind(&self, kind: &str) -> Option<&[u8]> {
+        (self.kind == kind).then_some(&self.bytes[..])
+    }
+
+    /// The text of a `string` in UTF-8; OpenEXR specifies no encoding.
     pub(crate) fn as_text(&self) -> Option<&str> {
-        match self {
-            Self::Text(text) => Some(text),
-            _ => None,
-        }
+        str::from_utf8(self.of_kind("string")?).ok()
     }
 
-    /// The value as a file holds it, little endian.
-    pub(crate) fn to_bytes(&self) -> Vec<u8> {
-        let singles = |values: &[f32]| values.iter().flat_map(|v| v.to_le_bytes()).collect();
-        match self {
-            Self::Text(text) => text.as_bytes().to_vec(),
-            Self::Float(value) => singles(&[*value]),
-            Self::Double(value) => value.to_le_bytes().to_vec(),
-            Self::Int(value) => value.to_le_bytes().to_vec(),
-            Self::Float2(values) => singles(values),
-            Self::Float3(values) => singles(values),
-            Self::Chromaticities(values) => singles(values.as_flattened()),
-            Self::Other { bytes, .. } => bytes.clone(),
-        }
-    }
-
-    /// The value of this type in these bytes; `None` if their number is not the type's.
-    pub(crate) fn from_bytes(kind: &str, bytes: Vec<u8>) -> Option<Self> {
-        Some(match kind {
-            "string" => Self::Text(String::from_utf8_lossy(&bytes).into_owned()),
-            "float" => Self::Float(singles::<1>(&bytes)?[0]),
-            "double" => Self::Double(f64::from_le_bytes(bytes.try_into().ok()?)),
-            "int" => Self::Int(i32::from_le_bytes(bytes.try_into().ok()?)),
-            "v2f" => Self::Float2(singles(&bytes)?),
-            "v3f" => Self::Float3(singles(&bytes)?),
-            "chromaticities" => {
-                let [rx, ry, gx, gy, bx, by, wx, wy] = singles(&bytes)?;
-                Self::Chromaticities([[rx, ry], [gx, gy], [bx, by], [wx, wy]])
-            }
-            _ => Self::Other { kind: kind.into(), bytes },
-        })
+    /// The numbers, if the attribute is of this type and has `N` single-precision numbers.
+    pub(crate) fn as_singles<const N: usize>(&self, kind: &str) -> Option<[f32; N]> {
+        let words: &[[u8; 4]; N] = self.of_kind(kind)?.as_chunks().0.try_into().ok()?;
+        Some(words.map(f32::from_le_bytes))
     }
 }
 
-/// The eight numbers of an RGB space.
+/// The chromaticities of an RGB space: x and y of red, green, blue and white.
 pub(crate) fn chromaticities(space: &RgbSpace) -> Attribute {
     let [red, green, blue] = space.primaries();
-    Attribute::Chromaticities([red, green, blue, space.white()].map(|c| c.map(to_single)))
+    let xy = [red, green, blue, space.white()].map(|c| c.map(to_single));
+    Attribute::singles("chromaticities", xy.as_flattened())
 }
 
-impl From<&str> for Attribute {
-    fn from(text: &str) -> Self {
-        Self::Text(text.into())
+impl<T: Into<String>> From<T> for Attribute {
+    fn from(text: T) -> Self {
+        Self::new("string", text.into().into_bytes())
     }
-}
-
-impl From<String> for Attribute {
-    fn from(text: String) -> Self {
-        Self::Text(text)
-    }
-}
-
-/// `N` single-precision numbers, little endian; `None` if the bytes are not that many.
-fn singles<const N: usize>(bytes: &[u8]) -> Option<[f32; N]> {
-    let (words, rest) = bytes.as_chunks::<4>();
-    let words: &[[u8; 4]; N] = words.try_into().ok()?;
-    rest.is_empty().then(|| words.map(f32::from_le_bytes))
 }
 
 #[cfg(test)]
@@ -120,27 +69,25 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_type_survives_its_bytes() {
-        let white = [0.3127, 0.329];
-        for value in [
-            Attribute::from("400nm:0.5;"),
-            Attribute::Float(-1.5),
-            Attribute::Double(1e-300),
-            Attribute::Int(-7),
-            Attribute::Float2([1.0, 2.0]),
-            Attribute::Float3([1.0, 2.0, 3.0]),
-            Attribute::Chromaticities([[0.64, 0.33], [0.3, 0.6], [0.15, 0.06], white]),
-            Attribute::Other { kind: "mine".into(), bytes: vec![1, 2, 3] },
-        ] {
-            let back = Attribute::from_bytes(value.kind(), value.to_bytes());
-            assert_eq!(back, Some(value));
-        }
+    fn values_are_read_back_as_their_own_type_only() {
+        let text = Attribute::from("400nm:0.5;");
+        assert_eq!((text.as_text(), text.as_singles::<1>("float")), (Some("400nm:0.5;"), None));
+        let white = Attribute::singles("v2f", &[0.3127, 0.329]);
+        assert_eq!(white.as_singles("v2f"), Some([0.3127, 0.329]));
+        assert_eq!((white.as_singles::<3>("v2f"), white.as_singles::<2>("v3f")), (None, None));
+        assert_eq!(white.as_text(), None);
+        let space = chromaticities(&RgbSpace::default());
+        assert!(space.has_valid_length() && space.as_singles::<8>("chromaticities").is_some());
     }
 
     #[test]
-    fn a_value_of_the_wrong_length_is_none() {
+    fn a_value_of_the_wrong_length_is_invalid() {
         for kind in ["float", "double", "int", "v2f", "v3f", "chromaticities"] {
-            assert_eq!(Attribute::from_bytes(kind, vec![0; 5]), None, "{kind}");
+            assert!(!Attribute::new(kind, vec![0; 5]).has_valid_length(), "{kind}");
         }
+        for (kind, length) in LENGTHS {
+            assert!(Attribute::new(kind, vec![0; length]).has_valid_length(), "{kind}");
+        }
+        assert!(Attribute::new("mine", vec![1, 2, 3]).has_valid_length());
     }
 }

@@ -1,4 +1,4 @@
-//! The blocks of an OpenEXR image: where they lie, and their content unpacked.
+//! The blocks of an OpenEXR image: their positions and their decompression.
 
 use std::cell::Cell;
 
@@ -14,17 +14,17 @@ use half::slice::HalfFloatSliceExt;
 use super::header::{Channel, Header, Sample};
 
 thread_local! {
-    /// Whether this thread unpacks a block just now.
+    /// Whether this thread is decompressing a block.
     pub(super) static UNPACKING: Cell<bool> = const { Cell::new(false) };
 }
 
-/// The most bytes that one block may take unpacked: 256 rows of 16,384 pixels in 64 float channels.
+/// Most bytes of a decompressed block: 256 rows of 16,384 pixels in 64 float channels.
 pub(crate) const MAX_BLOCK_BYTES: u64 = 1 << 30;
 
-/// A rectangle of the image at full resolution that is stored as one.
+/// A rectangle of the image, at full resolution, that is compressed as one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Block {
-    /// Its number in the table of blocks.
+    /// Its index in the table of blocks.
     pub(crate) index: usize,
     /// First column and row, from 0.
     pub(crate) origin: [usize; 2],
@@ -32,7 +32,7 @@ pub(crate) struct Block {
     pub(crate) size: [usize; 2],
 }
 
-/// How an image is cut into blocks.
+/// How an image is divided into blocks.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Blocks {
     image: [usize; 2],
@@ -41,7 +41,7 @@ pub(crate) struct Blocks {
 
 impl Blocks {
     pub(crate) fn of(header: &Header) -> Self {
-        let rows = [header.size[0], header.packing.rows()];
+        let rows = [header.size[0], header.method.scan_lines_per_block()];
         Self { image: header.size, block: header.tiles.unwrap_or(rows) }
     }
 
@@ -50,7 +50,7 @@ impl Blocks {
         [0, 1].map(|k| self.block[k].min(self.image[k]))
     }
 
-    /// Blocks side by side, and on top of each other.
+    /// Columns and rows of blocks.
     pub(crate) fn counts(self) -> [usize; 2] {
         [0, 1].map(|k| self.image[k].div_ceil(self.block[k]))
     }
@@ -80,7 +80,7 @@ pub(crate) fn pixel_bytes(header: &Header) -> usize {
     header.channels.iter().map(|c| c.sample.bytes()).sum()
 }
 
-/// Unpacks blocks of one image.
+/// Decompresses blocks of one image.
 #[derive(Debug)]
 pub(crate) struct Unpacker {
     header: UnpackHeader,
@@ -89,7 +89,7 @@ pub(crate) struct Unpacker {
 impl Unpacker {
     pub(crate) fn new(header: &Header) -> Self {
         let channel = |c: &Channel| ChannelDescription {
-            // DWA packs a channel by its name.
+            // DWA chooses the compression of a channel by its name.
             name: Text::new_or_none(&c.name).unwrap_or_default(),
             sample_type: match c.sample {
                 Sample::Half => SampleType::F16,
@@ -109,7 +109,7 @@ impl Unpacker {
             })
         });
         let header = UnpackHeader::new("part".into(), size, channels).with_encoding(
-            header.packing.method(),
+            header.method,
             blocks,
             LineOrder::Increasing,
         );
@@ -124,8 +124,8 @@ impl Unpacker {
         if matches!(method, Compression::DWAA(_) | Compression::DWAB(_)) && packed.len() != whole {
             check_dwa(&packed, whole)?;
         }
-        // The crate's B44 panics on damaged data (1.74.2 subtracts with overflow), and its PIZ and DWA
-        // index by what they read: a file must not end the program, so this one call is fenced.
+        // On damaged data the crate's B44 panics (1.74.2 subtracts with overflow), and its PIZ and DWA
+        // use numbers of the file as indices. A file must not end the program, so panics are caught.
         UNPACKING.set(true);
         let unpacked = std::panic::catch_unwind(|| {
             method.decompress_image_section_from_le(&self.header, packed, section, false)
@@ -133,19 +133,19 @@ impl Unpacker {
         UNPACKING.set(false);
         match unpacked {
             Ok(bytes) => bytes.map_err(|error| error.to_string()),
-            Err(_) => Err("values that no such data has".into()),
+            Err(_) => Err("invalid values".into()),
         }
     }
 }
 
-/// Refuses sizes in the head of a DWA block that its pixels cannot have: the crate allocates what
-/// is stated there, and a failed allocation ends the program.
+/// Refuses impossible sizes in the header of a DWA block: the crate allocates what is stated there,
+/// and a failed allocation ends the program.
 fn check_dwa(packed: &[u8], whole: usize) -> Result<(), String> {
     /// Version, seven sizes in bytes, two counts of 16-bit numbers, and a choice.
     const COUNTERS: usize = 11;
-    /// Pixels are padded to squares of 8 and stored as runs, which may be longer than what they hold.
+    /// Pixels are padded to squares of 8 by 8, and run-length encoding may lengthen data.
     const PADDED: u64 = 64;
-    /// Padding of the smallest blocks.
+    /// Allowance for the padding of the smallest blocks.
     const LEAST: u64 = 1 << 16;
     let most = whole as u64 * PADDED + LEAST;
     let most = most.min(2 * MAX_BLOCK_BYTES);
@@ -156,7 +156,7 @@ fn check_dwa(packed: &[u8], whole: usize) -> Result<(), String> {
     }
 }
 
-/// The samples in `bytes`, as single precision.
+/// Converts the samples in `bytes` to single precision.
 pub(crate) fn decode(sample: Sample, bytes: &[u8], to: &mut [f32]) {
     fn fill<const N: usize>(to: &mut [f32], bytes: &[u8], value: impl Fn([u8; N]) -> f32) {
         to.iter_mut().zip(bytes.as_chunks().0).for_each(|(to, b)| *to = value(*b));

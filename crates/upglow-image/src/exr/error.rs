@@ -9,99 +9,56 @@ pub enum ExrError {
     /// The file cannot be read.
     #[error(transparent)]
     Io(#[from] io::Error),
-    /// The file begins with other bytes.
-    #[error("the file begins with {found:02x?}, expected an OpenEXR file: [76, 2f, 31, 01]")]
-    NotExr {
-        /// The first four bytes.
-        found: [u8; 4],
-    },
-    /// The file is of another version of the format.
-    #[error("OpenEXR version {found}, expected 2")]
-    Version {
-        /// The version.
-        found: u8,
-    },
     /// The file ends early.
     #[error("the file ends inside {what}, expected a whole file")]
     Truncated {
         /// What is cut.
         what: String,
     },
-    /// The file is of a kind that is not read.
+    /// The file is not OpenEXR, is damaged, or is of a kind or size that is not read.
     #[error("{found}, expected {expected}")]
-    Unsupported {
-        /// The kind.
-        found: &'static str,
-        /// What is read.
-        expected: &'static str,
-    },
-    /// A field of the header has a value that makes no sense.
-    #[error("{field} is {found}, expected {expected}")]
-    Header {
-        /// The field.
-        field: String,
-        /// Its value, or what is wrong with it.
+    Invalid {
+        /// The invalid part of the file.
         found: String,
-        /// What it should be.
-        expected: String,
-    },
-    /// One block takes more memory than is given to it.
-    #[error("a block of {found} bytes, expected at most {expected}")]
-    BlockSize {
-        /// Bytes of a block once unpacked.
-        found: u64,
-        /// The most that is unpacked at once.
-        expected: u64,
-    },
-    /// A block is not where the table of blocks says, or cannot be unpacked.
-    #[error("block {index} of {count} is damaged: {found}, expected {expected}")]
-    Block {
-        /// Its number, from 0.
-        index: usize,
-        /// How many blocks there are.
-        count: usize,
-        /// What is wrong.
-        found: String,
-        /// What it should be.
+        /// What would be valid.
         expected: String,
     },
     /// The file has no channel of this name.
     #[error("no channel {name:?}, expected {expected}")]
     NoChannel {
-        /// The name asked for.
+        /// The requested name.
         name: String,
-        /// What there is.
+        /// Some of the names that exist.
         expected: String,
     },
-    /// Pixels were asked for that the image does not have.
-    #[error("columns {columns:?} of rows {rows:?}, expected some inside {width} by {height}")]
+    /// A region that is empty or extends beyond the image.
+    #[error("columns {columns:?} of rows {rows:?}, expected some inside {} by {}", .size[0], .size[1])]
     Outside {
         /// First column, and the column after the last.
         columns: [usize; 2],
         /// First row, and the row after the last.
         rows: [usize; 2],
-        /// Columns of the image.
-        width: usize,
-        /// Rows of the image.
-        height: usize,
+        /// Width and height of the image.
+        size: [usize; 2],
     },
 }
 
 impl ExrError {
-    pub(crate) fn header(
-        field: &str,
-        found: impl Into<String>,
-        expected: impl Into<String>,
-    ) -> Self {
-        let [field, found, expected] = [field.into(), found.into(), expected.into()].map(shown);
-        Self::Header { field, found, expected }
+    pub(crate) fn invalid(found: impl Into<String>, expected: impl ToString) -> Self {
+        Self::Invalid { found: found.into(), expected: expected.to_string() }
+    }
+
+    /// The error of a field of the header, with texts that may come from the file.
+    pub(crate) fn header(field: &str, found: impl ToString, expected: impl ToString) -> Self {
+        let found = format!("{} is {}", shown(field), shown(found.to_string()));
+        Self::invalid(found, shown(expected.to_string()))
     }
 
     pub(crate) fn truncated(what: impl Into<String>) -> Self {
         Self::Truncated { what: shown(what.into()) }
     }
 
-    /// What a failed read of `what` means.
+    /// The error of a failed read of `what`.
     pub(crate) fn read(error: io::Error, what: &str) -> Self {
         match error.kind() {
             io::ErrorKind::UnexpectedEof => Self::truncated(what),
@@ -110,9 +67,9 @@ impl ExrError {
     }
 }
 
-/// Text of a file as a part of one line that a person reads.
+/// Text from a file, shortened and with control characters escaped, for a message of one line.
 pub(crate) fn shown(text: impl AsRef<str>) -> String {
-    /// A quarter of a line's 400 characters, with room for escapes.
+    /// Messages stay below 400 characters even if each of these is escaped.
     const MOST: usize = 60;
     let text = text.as_ref();
     let start: String = text.chars().take(MOST).collect();
@@ -121,4 +78,19 @@ pub(crate) fn shown(text: impl AsRef<str>) -> String {
     let escape =
         |c: char| if c.is_control() { c.escape_default().collect() } else { c.to_string() };
     start.chars().map(escape).collect::<String>() + more
+}
+
+/// Some names from a file, for a message of one line.
+pub(crate) fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    /// Most names that are listed.
+    const NAMES: usize = 12;
+    /// Most characters of a name, which usually is a word or two.
+    const CHARACTERS: usize = 20;
+    let plain = |c: char| if c.is_control() { '\u{fffd}' } else { c };
+    let start = |name: &str| name.chars().take(CHARACTERS).map(plain).collect::<String>();
+    let mut names: Vec<String> = names.take(NAMES + 1).map(start).collect();
+    if names.len() > NAMES {
+        names[NAMES] = "…".into();
+    }
+    names.join(", ")
 }

@@ -1,11 +1,11 @@
-//! The header of an OpenEXR file: parsed with every size checked, printed with sorted attributes.
+//! The header of an OpenEXR file: parsed with every size checked, written with sorted attributes.
 //!
-//! The layout is that of `openexr`, "OpenEXR File Layout". Written here rather than with the
-//! `exr` crate, which keeps attributes in a hash map: its files differ from run to run.
+//! The layout is that of `openexr`, "OpenEXR File Layout". The `exr` crate is not used for this,
+//! because it keeps attributes in a hash map, so that its files differ from run to run.
 
 use std::io::Read;
 
-use exr::compression::Compression;
+use exr::compression::Compression as Method;
 
 use super::attribute::{Attribute, Attributes};
 use super::error::ExrError;
@@ -18,28 +18,28 @@ const LONG_NAMES: u32 = 0x400;
 const DEEP: u32 = 0x800;
 const MULTI_PART: u32 = 0x1000;
 
-/// Names of attributes, types and channels end within this many bytes.
+/// Longest name of an attribute, a type or a channel, bytes.
 const MAX_NAME: usize = 255;
-/// Names up to this length need no flag in the version field.
+/// Longer names need a flag in the version field.
 const SHORT_NAME: usize = 31;
-/// One attribute; larger ones are hostile: 100,000 channels of 255 characters fit.
+/// Most bytes of one attribute: 100,000 channels with names of 255 characters fit.
 const MAX_ATTRIBUTE: u32 = 64 << 20;
-/// All headers of a file together.
+/// Most bytes of all headers of a file together.
 const MAX_HEADER: u64 = 256 << 20;
-/// Rows or columns; textures end at a quarter of this, and sizes in bytes stay far from overflow.
+/// Most rows or columns: four times the largest textures; sizes in bytes stay far from overflow.
 pub(crate) const MAX_SIDE: usize = 1 << 17;
-/// Parts of one file: far beyond the views and layers of any production file.
+/// Most parts of a file: far beyond the views and layers of any production file.
 const MAX_PARTS: usize = 4096;
 
 /// How a channel stores its samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sample {
     /// 16-bit float: 11 significant bits, at most 65504.
-    Half,
+    Half = 1,
     /// 32-bit float.
-    Float,
+    Float = 2,
     /// 32-bit unsigned integer; read, never written.
-    Uint,
+    Uint = 0,
 }
 
 impl Sample {
@@ -51,27 +51,23 @@ impl Sample {
         }
     }
 
-    fn code(self) -> i32 {
-        match self {
-            Self::Uint => 0,
-            Self::Half => 1,
-            Self::Float => 2,
-        }
+    fn of_code(code: i32) -> Option<Self> {
+        [Self::Half, Self::Float, Self::Uint].into_iter().find(|sample| *sample as i32 == code)
     }
 }
 
 /// One channel of an image.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Channel {
-    /// Its name; a point separates layers.
+    /// Its name; a point separates the names of layers and channel.
     pub(crate) name: String,
-    /// How it stores its samples.
+    /// The type of its samples.
     pub(crate) sample: Sample,
-    /// Whether B44 compression packs it as it is, and not as its logarithm.
+    /// Whether B44 compresses the samples themselves instead of their logarithms.
     pub(crate) is_linear: bool,
 }
 
-/// A rectangle of pixels, both corners included; OpenEXR counts from any origin.
+/// A rectangle of pixels, including both corners; the origin may lie anywhere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Window {
     /// Column and row of the first pixel.
@@ -83,7 +79,7 @@ pub(crate) struct Window {
 impl Window {
     /// The window of a picture of this width and height whose first pixel is (0, 0).
     ///
-    /// A side of 0 or beyond 131,072 is cut to that range: no file holds it.
+    /// Sides are clamped to 1..=131,072, the sizes that files can have.
     pub(crate) fn of_size(size: [usize; 2]) -> Self {
         let last = |side: usize| i32::try_from(side.clamp(1, MAX_SIDE) - 1).unwrap_or(i32::MAX);
         Self { min: [0, 0], max: size.map(last) }
@@ -110,71 +106,45 @@ impl Window {
     }
 }
 
-/// How blocks are packed: the code that a file has for it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Packing(u8);
-
-/// The methods by their codes.
-const METHODS: [Compression; 10] = [
-    Compression::Uncompressed,
-    Compression::RLE,
-    Compression::ZIP1,
-    Compression::ZIP16,
-    Compression::PIZ,
-    Compression::PXR24,
-    Compression::B44,
-    Compression::B44A,
-    Compression::DWAA(None),
-    Compression::DWAB(None),
+/// The compression methods that are supported, by their codes in files.
+const METHODS: [Method; 10] = [
+    Method::Uncompressed,
+    Method::RLE,
+    Method::ZIP1,
+    Method::ZIP16,
+    Method::PIZ,
+    Method::PXR24,
+    Method::B44,
+    Method::B44A,
+    Method::DWAA(None),
+    Method::DWAB(None),
 ];
 
-/// Rows of a block where the image is stored by rows, by the codes of the methods.
-const BLOCK_ROWS: [usize; 10] = [1, 1, 1, 16, 32, 16, 32, 32, 32, 256];
-
-impl Packing {
-    pub(crate) const NONE: Self = Self(0);
-    /// ZIP of each row by itself.
-    pub(crate) const ZIPS: Self = Self(2);
-    pub(crate) const ZIP: Self = Self(3);
-
-    fn of_code(code: u8) -> Option<Self> {
-        (usize::from(code) < METHODS.len()).then_some(Self(code))
-    }
-
-    pub(crate) fn method(self) -> Compression {
-        METHODS[usize::from(self.0)]
-    }
-
-    /// Rows of a block where the image is stored by rows.
-    pub(crate) fn rows(self) -> usize {
-        BLOCK_ROWS[usize::from(self.0)]
-    }
-}
-
-/// What a part of a file says of itself.
+/// The header of one part of a file.
 #[derive(Clone, Debug)]
 pub(crate) struct Header {
     pub(crate) channels: Vec<Channel>,
-    pub(crate) packing: Packing,
+    pub(crate) method: Method,
     pub(crate) data: Window,
     pub(crate) display: Window,
     /// Width and height of the data window.
     pub(crate) size: [usize; 2],
-    /// Width and height of a tile, where the image is stored by tiles.
+    /// Width and height of a tile, if the image is stored in tiles.
     pub(crate) tiles: Option<[usize; 2]>,
-    /// Blocks of all levels; stated where a file has many parts.
+    /// Blocks of all levels; files of many parts state it.
     pub(crate) chunk_count: Option<usize>,
-    /// Name of the part, where there is one.
+    /// Name of the part, if it has one.
     pub(crate) name: Option<String>,
-    /// What is left of the attributes.
+    /// The attributes that are not [`FIELDS`].
     pub(crate) attributes: Attributes,
 }
 
-/// The headers of a file, and where they end.
+/// The headers of a file.
 #[derive(Debug)]
 pub(crate) struct Headers {
     pub(crate) parts: Vec<Header>,
     pub(crate) multi_part: bool,
+    /// Position after the headers, bytes.
     pub(crate) end: u64,
 }
 
@@ -184,21 +154,23 @@ impl Headers {
         let mut bytes = Bytes { source, position: 0 };
         let magic = bytes.take::<4>("the magic number")?;
         if magic != MAGIC {
-            return Err(ExrError::NotExr { found: magic });
+            let found = format!("the file begins with {magic:02x?}");
+            return Err(ExrError::invalid(found, "an OpenEXR file: [76, 2f, 31, 01]"));
         }
         let version = u32::from_le_bytes(bytes.take("the version")?);
-        if version.to_le_bytes()[0] != VERSION {
-            return Err(ExrError::Version { found: version.to_le_bytes()[0] });
+        let [number, ..] = version.to_le_bytes();
+        if number != VERSION {
+            return Err(ExrError::invalid(format!("OpenEXR version {number}"), VERSION));
         }
         if version & DEEP != 0 {
-            return Err(ExrError::Unsupported { found: "deep data", expected: "flat images" });
+            return Err(ExrError::invalid("deep data", "flat images"));
         }
         let multi_part = version & MULTI_PART != 0;
         let mut parts = Vec::new();
         while let Some(header) = read_header(&mut bytes, version)? {
             parts.push(header);
             if parts.len() > MAX_PARTS {
-                let (found, expected) = (format!("over {MAX_PARTS}"), format!("{MAX_PARTS}"));
+                let (found, expected) = (parts.len(), format!("at most {MAX_PARTS}"));
                 return Err(ExrError::header("number of parts", found, expected));
             }
             if !multi_part {
@@ -212,9 +184,9 @@ impl Headers {
     }
 }
 
-/// The next header; `None` at the empty one that ends a file's list.
+/// The next header; `None` at the empty one that ends the headers of a multi-part file.
 fn read_header<R: Read>(bytes: &mut Bytes<R>, version: u32) -> Result<Option<Header>, ExrError> {
-    let mut raw: Vec<(String, String, Vec<u8>)> = Vec::new();
+    let mut attributes = Attributes::new();
     loop {
         let name = bytes.name("an attribute's name")?;
         if name.is_empty() {
@@ -229,23 +201,26 @@ fn read_header<R: Read>(bytes: &mut Bytes<R>, version: u32) -> Result<Option<Hea
         if bytes.position > MAX_HEADER {
             return Err(ExrError::header("header", "over 256 MiB", "at most 256 MiB"));
         }
-        let value = bytes.vec(length as usize, &name)?;
-        raw.push((name, kind, value));
+        let value = Attribute::new(&kind, bytes.vec(length as usize, &name)?);
+        if !value.has_valid_length() {
+            return Err(ExrError::header(&name, format!("a {kind} of {length} bytes"), kind));
+        }
+        attributes.insert(name, value);
     }
-    if raw.is_empty() && version & MULTI_PART != 0 {
+    if attributes.is_empty() && version & MULTI_PART != 0 {
         return Ok(None);
     }
-    build(raw, version).map(Some)
+    build(attributes, version).map(Some)
 }
 
-fn build(raw: Vec<(String, String, Vec<u8>)>, version: u32) -> Result<Header, ExrError> {
-    let value = |name: &'static str, kind: &'static str| -> Result<&[u8], ExrError> {
-        match raw.iter().find(|(n, ..)| n == name) {
-            Some((_, found, bytes)) if found == kind => Ok(bytes),
-            Some((_, found, _)) => Err(ExrError::header(name, format!("a {found}"), kind)),
-            None => Err(ExrError::header(name, "absent", kind)),
-        }
+fn build(mut attributes: Attributes, version: u32) -> Result<Header, ExrError> {
+    let value = |name: &str, kind: &str| match attributes.get(name) {
+        Some(value) => value
+            .of_kind(kind)
+            .ok_or_else(|| ExrError::header(name, format!("a {}", value.kind), kind)),
+        None => Err(ExrError::header(name, "absent", kind)),
     };
+    let stated = |name, kind| attributes.contains_key(name).then(|| value(name, kind)).transpose();
     let window = |name| {
         let bytes = value(name, "box2i")?;
         Window::from_bytes(bytes)
@@ -258,34 +233,31 @@ fn build(raw: Vec<(String, String, Vec<u8>)>, version: u32) -> Result<Header, Ex
         let expected = format!("1 to {MAX_SIDE} pixels a side");
         return Err(ExrError::header("dataWindow", format!("{min:?} to {max:?}"), expected));
     };
-    let has = |name: &str| raw.iter().any(|(n, ..)| n == name);
-    let stated = |name, kind| has(name).then(|| value(name, kind)).transpose();
     let tiled = match stated("type", "string")? {
         Some(b"scanlineimage") => false,
         Some(b"tiledimage") => true,
         Some(other) => {
-            let found = String::from_utf8_lossy(other).into_owned();
+            let found = String::from_utf8_lossy(other);
             return Err(ExrError::header("type", found, "scanlineimage or tiledimage"));
         }
         None => version & TILED != 0,
     };
-    let tiles = tiled.then(|| parse_tiles(value("tiles", "tiledesc")?)).transpose()?;
-    let chunk_count = stated("chunkCount", "int")?.map(parse_count).transpose()?;
-    let name = stated("name", "string")?;
-    Ok(Header {
+    let header = Header {
         channels: parse_channels(value("channels", "chlist")?)?,
-        packing: parse_packing(value("compression", "compression")?)?,
+        method: parse_method(value("compression", "compression")?)?,
         data,
         display: window("displayWindow")?,
         size,
-        tiles,
-        chunk_count,
-        name: name.map(|bytes| String::from_utf8_lossy(bytes).into_owned()),
-        attributes: collect(raw)?,
-    })
+        tiles: tiled.then(|| parse_tiles(value("tiles", "tiledesc")?)).transpose()?,
+        chunk_count: stated("chunkCount", "int")?.map(parse_count).transpose()?,
+        name: stated("name", "string")?.map(|name| String::from_utf8_lossy(name).into_owned()),
+        attributes: Attributes::new(),
+    };
+    attributes.retain(|name, _| !is_reserved(name));
+    Ok(Header { attributes, ..header })
 }
 
-/// Attributes that [`Header`] has as fields, or that say nothing of the pixels.
+/// Attributes that [`Header`] has as fields, or that are not used.
 const FIELDS: [&str; 12] = [
     "channels",
     "chunkCount",
@@ -301,33 +273,19 @@ const FIELDS: [&str; 12] = [
     "type",
 ];
 
-/// Whether the format itself states this attribute.
+/// Whether the format itself defines this attribute.
 pub(crate) fn is_reserved(name: &str) -> bool {
     FIELDS.contains(&name)
 }
 
-fn collect(raw: Vec<(String, String, Vec<u8>)>) -> Result<Attributes, ExrError> {
-    let mut attributes = Attributes::new();
-    for (name, kind, bytes) in raw.into_iter().filter(|(name, ..)| !is_reserved(name)) {
-        let length = bytes.len();
-        let Some(value) = Attribute::from_bytes(&kind, bytes) else {
-            return Err(ExrError::header(&name, format!("a {kind} of {length} bytes"), kind));
-        };
-        attributes.insert(name, value);
-    }
-    Ok(attributes)
-}
-
 fn parse_count(bytes: &[u8]) -> Result<usize, ExrError> {
-    let count = bytes.try_into().ok().map(i32::from_le_bytes);
-    count
-        .and_then(|count| usize::try_from(count).ok())
-        .ok_or_else(|| ExrError::header("chunkCount", format!("{count:?}"), "a number of blocks"))
+    let count = bytes.try_into().map_or(-1, i32::from_le_bytes);
+    usize::try_from(count).map_err(|_| ExrError::header("chunkCount", count, "a number of blocks"))
 }
 
-fn parse_packing(bytes: &[u8]) -> Result<Packing, ExrError> {
-    let code = bytes.first().filter(|_| bytes.len() == 1);
-    code.and_then(|&code| Packing::of_code(code)).ok_or_else(|| {
+fn parse_method(bytes: &[u8]) -> Result<Method, ExrError> {
+    let method = if let [code] = bytes { METHODS.get(usize::from(*code)) } else { None };
+    method.copied().ok_or_else(|| {
         ExrError::header("compression", format!("code {bytes:?}"), "a code from 0 to 9")
     })
 }
@@ -346,7 +304,7 @@ fn parse_tiles(bytes: &[u8]) -> Result<[usize; 2], ExrError> {
     Ok(size)
 }
 
-/// Bytes after the name of a channel: sample type, flag and padding, sampling of x and y.
+/// Bytes after the name of a channel: sample type, flag and padding, subsampling in x and y.
 const CHANNEL_TAIL: usize = 16;
 
 fn parse_channels(mut bytes: &[u8]) -> Result<Vec<Channel>, ExrError> {
@@ -373,16 +331,11 @@ fn parse_channels(mut bytes: &[u8]) -> Result<Vec<Channel>, ExrError> {
 
 fn parse_channel(name: String, tail: &[u8]) -> Result<Channel, ExrError> {
     let words = tail.as_chunks::<4>().0;
-    let sample = match i32::from_le_bytes(words[0]) {
-        0 => Sample::Uint,
-        1 => Sample::Half,
-        2 => Sample::Float,
-        other => {
-            let found = format!("sample type {other} in channel {name}");
-            return Err(ExrError::header("channels", found, "0, 1 or 2"));
-        }
-    };
-    let [x, y] = [words[2], words[3]].map(i32::from_le_bytes);
+    let [code, _, x, y] = [0, 1, 2, 3].map(|k| i32::from_le_bytes(words[k]));
+    let sample = Sample::of_code(code).ok_or_else(|| {
+        let found = format!("sample type {code} in channel {name}");
+        ExrError::header("channels", found, "0, 1 or 2")
+    })?;
     if (x, y) != (1, 1) {
         let found = format!("channel {name} sampled every {x} by {y} pixels");
         return Err(ExrError::header("channels", found, "every pixel"));
@@ -390,7 +343,7 @@ fn parse_channel(name: String, tail: &[u8]) -> Result<Channel, ExrError> {
     Ok(Channel { name, sample, is_linear: tail[4] != 0 })
 }
 
-/// Bytes that are read forward, with what was expected where they end.
+/// Reads from a source and counts the bytes; errors name what was being read.
 struct Bytes<R> {
     source: R,
     position: u64,
@@ -404,7 +357,8 @@ impl<R: Read> Bytes<R> {
         Ok(bytes)
     }
 
-    /// Grows with what is there, so that a false size costs nothing.
+    /// The value of attribute `what`. The vector grows as bytes arrive, so that a false length costs
+    /// no memory.
     fn vec(&mut self, length: usize, what: &str) -> Result<Vec<u8>, ExrError> {
         let mut bytes = Vec::new();
         let mut limited = (&mut self.source).take(length as u64);
@@ -424,51 +378,48 @@ impl<R: Read> Bytes<R> {
                 [byte] if name.len() < MAX_NAME => name.push(byte),
                 _ => {
                     let expected = format!("at most {MAX_NAME} characters");
-                    return Err(ExrError::header(
-                        "header",
-                        format!("{what} without end"),
-                        expected,
-                    ));
+                    return Err(ExrError::header(what, "longer", expected));
                 }
             }
         }
     }
 }
 
-/// The bytes before the table of blocks of a file of one part, stored by rows.
+/// The header of a file that has one part and is stored by rows.
 ///
 /// `channels` are sorted by name.
 pub(crate) fn print(
     channels: &[Channel],
-    packing: Packing,
+    method: Method,
     [data, display]: [Window; 2],
     attributes: &Attributes,
 ) -> Vec<u8> {
-    let other = |kind: &str, bytes| Attribute::Other { kind: kind.into(), bytes };
+    let code = METHODS.iter().position(|known| *known == method).expect("a method of the list");
+    let code = u8::try_from(code).expect("there are ten");
     let mut all = attributes.clone();
-    all.extend([
-        ("channels".into(), other("chlist", print_channels(channels))),
-        ("compression".into(), other("compression", vec![packing.0])),
-        ("dataWindow".into(), other("box2i", data.to_bytes())),
-        ("displayWindow".into(), other("box2i", display.to_bytes())),
-        ("lineOrder".into(), other("lineOrder", vec![0])),
-        ("pixelAspectRatio".into(), Attribute::Float(1.0)),
-        ("screenWindowCenter".into(), Attribute::Float2([0.0; 2])),
-        ("screenWindowWidth".into(), Attribute::Float(1.0)),
-    ]);
+    let fields = [
+        ("channels", Attribute::new("chlist", print_channels(channels))),
+        ("compression", Attribute::new("compression", vec![code])),
+        ("dataWindow", Attribute::new("box2i", data.to_bytes())),
+        ("displayWindow", Attribute::new("box2i", display.to_bytes())),
+        ("lineOrder", Attribute::new("lineOrder", vec![0])),
+        ("pixelAspectRatio", Attribute::singles("float", &[1.0])),
+        ("screenWindowCenter", Attribute::singles("v2f", &[0.0; 2])),
+        ("screenWindowWidth", Attribute::singles("float", &[1.0])),
+    ];
+    all.extend(fields.map(|(name, value)| (name.to_owned(), value)));
     let channel_names = channels.iter().map(|c| c.name.len());
     let longest = all.keys().map(String::len).chain(channel_names).max().unwrap_or(0);
     let flags = if longest > SHORT_NAME { LONG_NAMES } else { 0 };
     let mut bytes = MAGIC.to_vec();
     bytes.extend((u32::from(VERSION) | flags).to_le_bytes());
-    for (name, value) in &all {
-        let content = value.to_bytes();
-        for text in [name, value.kind()] {
+    for (name, Attribute { kind, bytes: value }) in &all {
+        for text in [name, kind] {
             bytes.extend(text.as_bytes());
             bytes.push(0);
         }
-        bytes.extend(u32::try_from(content.len()).unwrap_or(u32::MAX).to_le_bytes());
-        bytes.extend(content);
+        bytes.extend(u32::try_from(value.len()).unwrap_or(u32::MAX).to_le_bytes());
+        bytes.extend(value);
     }
     bytes.push(0);
     bytes
@@ -479,7 +430,7 @@ fn print_channels(channels: &[Channel]) -> Vec<u8> {
     for Channel { name, sample, is_linear } in channels {
         bytes.extend(name.as_bytes());
         bytes.push(0);
-        for word in [sample.code(), i32::from(*is_linear), 1, 1] {
+        for word in [*sample as i32, i32::from(*is_linear), 1, 1] {
             bytes.extend(word.to_le_bytes());
         }
     }
@@ -501,27 +452,27 @@ mod tests {
         let channels = vec![channel("B", Sample::Half), channel("Z", Sample::Float)];
         let attributes = Attributes::from([
             ("owner".into(), "me".into()),
-            ("a name of more than thirty-one letters".into(), Attribute::Float(2.5)),
+            ("a name of more than thirty-one letters".into(), Attribute::singles("float", &[2.5])),
         ]);
         let display = Window::of_size([7, 9]);
         let data = Window { min: [-1, 2], max: [3, 8] };
-        let bytes = print(&channels, Packing::ZIP, [data, display], &attributes);
+        let bytes = print(&channels, Method::ZIP16, [data, display], &attributes);
         (channels, attributes, bytes)
     }
 
     #[test]
-    fn a_header_survives_its_bytes() {
+    fn a_header_is_read_back_from_its_bytes() {
         let (channels, attributes, bytes) = printed();
         let headers = Headers::read(&bytes[..]).unwrap();
         let header = &headers.parts[0];
         assert_eq!(headers.end, bytes.len() as u64);
         assert_eq!((header.size, header.data.min), ([5, 7], [-1, 2]));
         assert_eq!((&header.channels, &header.attributes), (&channels, &attributes));
-        assert_eq!((header.packing, header.display.max), (Packing::ZIP, [6, 8]));
+        assert_eq!((header.method, header.display.max), (Method::ZIP16, [6, 8]));
     }
 
     #[test]
-    fn a_header_cut_short_anywhere_says_where() {
+    fn a_truncated_header_is_refused_wherever_it_ends() {
         let (_, _, bytes) = printed();
         for length in 0..bytes.len() {
             let message = Headers::read(&bytes[..length]).unwrap_err().to_string();
@@ -530,9 +481,9 @@ mod tests {
     }
 
     #[test]
-    fn sizes_that_no_picture_has_are_refused() {
+    fn invalid_sizes_are_refused() {
         let message = |window: Window| {
-            let bytes = print(&[], Packing::NONE, [window; 2], &Attributes::new());
+            let bytes = print(&[], Method::Uncompressed, [window; 2], &Attributes::new());
             Headers::read(&bytes[..]).unwrap_err().to_string()
         };
         let huge = message(Window { min: [0, 0], max: [i32::MAX, 3] });

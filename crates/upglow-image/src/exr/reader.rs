@@ -1,7 +1,7 @@
 //! OpenEXR images, read by regions.
 
 use std::fs::File;
-use std::io::{BufReader, Read, Seek, SeekFrom};
+use std::io::{BufReader, Read, Seek};
 use std::ops::Range;
 use std::path::Path;
 
@@ -9,14 +9,15 @@ use rayon::prelude::*;
 
 use super::attribute::Attributes;
 use super::blocks::{Block, Blocks, MAX_BLOCK_BYTES, UNPACKING, Unpacker, decode, pixel_bytes};
-use super::error::ExrError;
+use super::error::{ExrError, listed};
 use super::header::{Channel, Header, Headers, Sample, Window};
 
 /// One image of an OpenEXR file, opened for reading.
 ///
-/// Flat images stored by rows or tiles, every compression but HTJ2K, half, float and unsigned
-/// channels; of several levels the full one. Reading a region takes the memory of its
-/// blocks, packed and unpacked, and of the samples asked for; a block is at most 1 GiB.
+/// Reads flat images stored in rows or tiles, with every compression but HTJ2K and with half, float and
+/// unsigned channels; if there are several levels, the one of full resolution. Reading a region takes
+/// the memory of its blocks, compressed and decompressed, and of the requested samples; a block is at
+/// most 1 GiB.
 #[derive(Debug)]
 pub struct ExrReader {
     file: BufReader<File>,
@@ -24,24 +25,24 @@ pub struct ExrReader {
     header: Header,
     unpacker: Unpacker,
     blocks: Blocks,
-    /// Where the table of blocks begins.
+    /// Position of the table of blocks, bytes.
     table: u64,
-    /// Number of the part, which each block repeats where there are several.
+    /// Number of the part, which each block of a multi-part file repeats.
     part: Option<i32>,
 }
 
 impl ExrReader {
-    /// Opens the only or first part of a file.
+    /// Opens the first part of a file.
     ///
     /// # Errors
     ///
-    /// [`ExrError`] says what was found and what was expected.
+    /// [`ExrError`] if it cannot be read or is not a valid OpenEXR file of a kind that is read.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, ExrError> {
         Self::open_with(path.as_ref(), |_| Ok(0))
     }
 
-    /// Whether this thread unpacks a block just now: a panic in there becomes an error that says what
-    /// is wrong with the file, so a program's panic hook need not speak of it.
+    /// Whether this thread is decompressing a block. A panic there is caught and becomes an error of
+    /// the file, so a program's panic hook should not report it.
     pub fn is_unpacking() -> bool {
         UNPACKING.get()
     }
@@ -51,7 +52,10 @@ impl ExrReader {
         path: &Path,
         choose: impl FnOnce(&[Header]) -> Result<usize, E>,
     ) -> Result<Self, E> {
-        let (file, length, headers) = open_headers(path)?;
+        let file = File::open(path).map_err(ExrError::Io)?;
+        let length = file.metadata().map_err(ExrError::Io)?.len();
+        let mut file = BufReader::new(file);
+        let headers = Headers::read(&mut file)?;
         let index = choose(&headers.parts)?;
         Ok(Self::of_part(file, length, headers, index)?)
     }
@@ -74,7 +78,8 @@ impl ExrReader {
         let [columns, rows] = blocks.block_size().map(|side| side as u64);
         let block_bytes = columns * rows * pixel_bytes(&header) as u64;
         if block_bytes > MAX_BLOCK_BYTES {
-            return Err(ExrError::BlockSize { found: block_bytes, expected: MAX_BLOCK_BYTES });
+            let expected = format!("at most {MAX_BLOCK_BYTES}");
+            return Err(ExrError::invalid(format!("a block of {block_bytes} bytes"), expected));
         }
         let table = end + counts[..index].iter().sum::<u64>() * 8;
         let part = multi_part.then(|| i32::try_from(index).unwrap_or(i32::MAX));
@@ -86,52 +91,49 @@ impl ExrReader {
         self.header.size
     }
 
-    /// Names of the channels, as the file orders them: by name.
+    /// Names of the channels, in the order of the file: sorted.
     pub fn channel_names(&self) -> impl ExactSizeIterator<Item = &str> {
         self.channels().iter().map(|channel| channel.name.as_str())
     }
 
-    /// The channels, as the file orders them: by name.
+    /// The channels, in the order of the file: by name.
     pub(crate) fn channels(&self) -> &[Channel] {
         &self.header.channels
     }
 
-    /// The attributes that are not about how pixels are stored.
+    /// The attributes, without those that the format itself defines.
     pub(crate) fn attributes(&self) -> &Attributes {
         &self.header.attributes
     }
 
-    /// Where the pixels lie, and the part of the plane that is meant to be seen.
+    /// The data window and the display window.
     pub(crate) fn windows(&self) -> [Window; 2] {
         [self.header.data, self.header.display]
     }
 
-    /// Rows that are stored together: reading fewer at once unpacks a block more than once.
+    /// Rows of a block. Reading fewer rows at a time decompresses blocks repeatedly.
     pub fn block_rows(&self) -> usize {
         self.blocks.block_size()[1]
     }
 
-    /// The number of the channel of this name.
+    /// The index of the channel of this name.
     ///
     /// # Errors
     ///
-    /// [`ExrError::NoChannel`] names some that there are.
+    /// [`ExrError::NoChannel`] lists some of the names that exist.
     pub fn channel(&self, name: &str) -> Result<usize, ExrError> {
-        let mut names = self.channel_names();
-        names.position(|found| found == name).ok_or_else(|| {
-            /// A line that a person reads.
-            const SHOWN: usize = 8;
-            let more = if self.channels().len() > SHOWN { ", …" } else { "" };
-            let some = self.channel_names().take(SHOWN).collect::<Vec<_>>().join(", ");
-            ExrError::NoChannel { name: name.into(), expected: some + more }
+        let position = self.channel_names().position(|found| found == name);
+        position.ok_or_else(|| ExrError::NoChannel {
+            name: name.into(),
+            expected: listed(self.channel_names()),
         })
     }
 
-    /// All columns of some rows: for each channel asked for, its samples row by row.
+    /// All columns of some rows: for each requested channel, its samples row by row.
     ///
     /// # Errors
     ///
-    /// [`ExrError`] if the rows are not the image's or a block is damaged.
+    /// [`ExrError`] if the image does not have these rows or a block is damaged.
     pub fn read_rows(
         &mut self,
         rows: Range<usize>,
@@ -140,30 +142,30 @@ impl ExrReader {
         self.read_region(0..self.header.size[0], rows, channels)
     }
 
-    /// Some columns of some rows: for each channel asked for, its samples row by row.
+    /// Some columns of some rows: for each requested channel, its samples row by row.
     ///
-    /// Rows and columns count from the first of the data window. Only the blocks that are
-    /// touched are read; they are unpacked on all cores.
+    /// Rows and columns count from the first of the data window. Only the blocks that the region
+    /// touches are read; they are decompressed on all cores.
     ///
     /// # Errors
     ///
-    /// [`ExrError`] if the pixels are not the image's or a block is damaged.
+    /// [`ExrError`] if the image does not have these pixels or a block is damaged.
     pub fn read_region(
         &mut self,
         columns: Range<usize>,
         rows: Range<usize>,
         channels: &[usize],
     ) -> Result<Vec<Vec<f32>>, ExrError> {
-        let [width, height] = self.header.size;
-        if columns.is_empty() || rows.is_empty() || columns.end > width || rows.end > height {
+        let size = self.header.size;
+        if columns.is_empty() || rows.is_empty() || columns.end > size[0] || rows.end > size[1] {
             let (columns, rows) = ([columns.start, columns.end], [rows.start, rows.end]);
-            return Err(ExrError::Outside { columns, rows, width, height });
+            return Err(ExrError::Outside { columns, rows, size });
         }
-        let samples = channels.iter().map(|&c| self.samples(c)).collect::<Result<Vec<_>, _>>()?;
-        let region = Region { columns, rows };
+        let places = channels.iter().map(|&c| self.place(c)).collect::<Result<Vec<_>, _>>()?;
+        let (region, pixel) = (Region { columns, rows }, pixel_bytes(&self.header));
         let mut planes = vec![vec![0.0; region.columns.len() * region.rows.len()]; channels.len()];
-        for line in self.block_lines(&region) {
-            let packed = line
+        for group in self.block_groups(&region) {
+            let packed = group
                 .into_iter()
                 .map(|block| Ok((block, self.packed(block)?)))
                 .collect::<Result<Vec<_>, ExrError>>()?;
@@ -172,8 +174,8 @@ impl ExrReader {
                 .map(|(block, bytes)| Ok((block, self.unpack(block, bytes)?)))
                 .collect::<Result<Vec<_>, ExrError>>()?;
             for (block, bytes) in unpacked {
-                for (plane, samples) in planes.iter_mut().zip(&samples) {
-                    region.copy(block, &bytes, samples, plane);
+                for (plane, place) in planes.iter_mut().zip(&places) {
+                    region.copy((block, &bytes), pixel, *place, plane);
                 }
             }
         }
@@ -181,8 +183,8 @@ impl ExrReader {
     }
 
     /// The blocks of a region in groups that fit in memory together.
-    fn block_lines(&self, region: &Region) -> Vec<Vec<Block>> {
-        /// Unpacked bytes of one group: enough work for many cores, little memory.
+    fn block_groups(&self, region: &Region) -> Vec<Vec<Block>> {
+        /// Decompressed bytes of one group: enough work for many cores, little memory.
         const GROUP_BYTES: usize = 64 << 20;
         let blocks: Vec<Block> =
             self.blocks.touching([region.columns.clone(), region.rows.clone()]).collect();
@@ -191,31 +193,31 @@ impl ExrReader {
         blocks.chunks((GROUP_BYTES / bytes).max(1)).map(<[Block]>::to_vec).collect()
     }
 
-    /// Where in a pixel's row the samples of a channel lie.
-    fn samples(&self, channel: usize) -> Result<ChannelSamples, ExrError> {
-        let Some(found) = self.header.channels.get(channel) else {
-            let expected = format!("0 to {}", self.header.channels.len().saturating_sub(1));
+    /// The bytes of one pixel in the channels before this one, and its type of samples.
+    fn place(&self, channel: usize) -> Result<(usize, Sample), ExrError> {
+        let Some(found) = self.channels().get(channel) else {
+            let expected = format!("0 to {}", self.channels().len().saturating_sub(1));
             return Err(ExrError::NoChannel { name: format!("number {channel}"), expected });
         };
-        let before = self.header.channels[..channel].iter().map(|c| c.sample.bytes()).sum();
-        Ok(ChannelSamples { before, sample: found.sample, pixel: pixel_bytes(&self.header) })
+        let before = self.channels()[..channel].iter().map(|c| c.sample.bytes()).sum();
+        Ok((before, found.sample))
     }
 
-    /// The packed bytes of a block.
+    /// The compressed bytes of a block.
     fn packed(&mut self, block: Block) -> Result<Vec<u8>, ExrError> {
         let at = self.offset(block)?;
-        let damaged = |s: &Self, found: String, expected: String| s.damaged(block, found, expected);
         let head = self.block_head(block);
         let mut found = vec![0; head.len() + 4];
         self.read_at(at, &mut found, block)?;
         let (position, size) = found.split_at(head.len());
         if position != head {
-            return Err(damaged(self, format!("it is of {position:?}"), format!("{head:?}")));
+            let found = format!("it begins with {position:?}");
+            return Err(self.damaged(block, found, format!("{head:?}")));
         }
         let size = size.first_chunk().copied().map_or(0, u32::from_le_bytes) as usize;
         let whole = block.size[0] * block.size[1] * pixel_bytes(&self.header);
         if size > whole {
-            return Err(damaged(self, format!("{size} bytes"), format!("at most {whole}")));
+            return Err(self.damaged(block, format!("{size} bytes"), format!("at most {whole}")));
         }
         let start = at + found.len() as u64;
         if start + size as u64 > self.length {
@@ -233,12 +235,12 @@ impl ExrReader {
         let first = self.table;
         if at <= first || at.saturating_add(8) > self.length {
             let expected = format!("between {first} and {}, the size of the file", self.length);
-            return Err(self.damaged(block, format!("it should be at byte {at}"), expected));
+            return Err(self.damaged(block, format!("its position is byte {at}"), expected));
         }
         Ok(at)
     }
 
-    /// What a block says first: its part, and its row or its tile and level.
+    /// The first bytes of a block: its part, and its row or its tile and level.
     fn block_head(&self, block: Block) -> Vec<u8> {
         let number = |n: usize| i32::try_from(n).unwrap_or(i32::MAX);
         let [width, height] = self.blocks.block_size();
@@ -254,60 +256,35 @@ impl ExrReader {
     fn read_at(&mut self, at: u64, to: &mut [u8], block: Block) -> Result<(), ExrError> {
         // A relative seek keeps the buffer, which holds the table's next entries.
         let here = self.file.stream_position()?;
-        match i64::try_from(at).ok().zip(i64::try_from(here).ok()) {
-            Some((at, here)) => self.file.seek_relative(at - here)?,
-            None => drop(self.file.seek(SeekFrom::Start(at))?),
-        }
+        self.file.seek_relative(at.wrapping_sub(here).cast_signed())?;
         let read = self.file.read_exact(to);
         read.map_err(|error| ExrError::read(error, &format!("block {}", block.index)))
     }
 
     fn unpack(&self, block: Block, packed: Vec<u8>) -> Result<Vec<u8>, ExrError> {
-        self.unpacker.unpack(packed, block).map_err(|found| {
-            self.damaged(
-                block,
-                found,
-                format!("{:?} data of its size", self.header.packing.method()),
-            )
-        })
+        let expected = || format!("{:?} data of its size", self.header.method);
+        let unpacked = self.unpacker.unpack(packed, block);
+        unpacked.map_err(|found| self.damaged(block, found, expected()))
     }
 
     fn damaged(&self, block: Block, found: String, expected: String) -> ExrError {
         let [across, down] = self.blocks.counts();
-        ExrError::Block { index: block.index, count: across * down, found, expected }
+        let (index, count) = (block.index, across * down);
+        ExrError::invalid(format!("block {index} of {count} is damaged: {found}"), expected)
     }
-}
-
-fn open_headers(path: &Path) -> Result<(BufReader<File>, u64, Headers), ExrError> {
-    let file = File::open(path)?;
-    let length = file.metadata()?.len();
-    let mut file = BufReader::new(file);
-    let headers = Headers::read(&mut file)?;
-    Ok((file, length, headers))
 }
 
 /// Entries of a part's table of blocks.
 fn table_length(part: &Header, multi_part: bool) -> Result<u64, ExrError> {
     let [across, down] = Blocks::of(part).counts();
+    let blocks = across * down;
     match part.chunk_count {
-        Some(count) if count >= across * down => Ok(count as u64),
-        Some(count) => {
-            let expected = format!("at least {}", across * down);
-            Err(ExrError::header("chunkCount", count.to_string(), expected))
+        Some(count) if count < blocks => {
+            Err(ExrError::header("chunkCount", count, format!("at least {blocks}")))
         }
         None if multi_part => Err(ExrError::header("chunkCount", "absent", "int")),
-        None => Ok((across * down) as u64),
+        count => Ok(count.unwrap_or(blocks) as u64),
     }
-}
-
-/// A channel inside the rows of a block.
-#[derive(Clone, Copy, Debug)]
-struct ChannelSamples {
-    /// Bytes of one pixel in the channels before it.
-    before: usize,
-    sample: Sample,
-    /// Bytes of one pixel in all channels.
-    pixel: usize,
 }
 
 #[derive(Clone, Debug)]
@@ -317,21 +294,27 @@ struct Region {
 }
 
 impl Region {
-    /// Copies what a block has of this region into one channel's samples.
-    fn copy(&self, block: Block, bytes: &[u8], of: &ChannelSamples, plane: &mut [f32]) {
+    /// Copies the samples of one channel that lie in both the block and this region. `pixel` and
+    /// `before` are the bytes of one pixel in all channels and in those before the channel.
+    fn copy(
+        &self,
+        (block, bytes): (Block, &[u8]),
+        pixel: usize,
+        (before, sample): (usize, Sample),
+        plane: &mut [f32],
+    ) {
         let overlap = |k: usize, range: &Range<usize>| {
             let end = block.origin[k] + block.size[k];
             range.start.max(block.origin[k])..range.end.min(end)
         };
         let (columns, rows) = (overlap(0, &self.columns), overlap(1, &self.rows));
-        let (width, sample) = (block.size[0], of.sample.bytes());
+        let width = block.size[0];
         for y in rows {
-            let row = (y - block.origin[1]) * width * of.pixel + of.before * width;
-            let from = row + (columns.start - block.origin[0]) * sample;
-            let to =
-                (y - self.rows.start) * self.columns.len() + columns.start - self.columns.start;
-            let samples = &bytes[from..from + columns.len() * sample];
-            decode(of.sample, samples, &mut plane[to..to + columns.len()]);
+            let row = (y - block.origin[1]) * width * pixel + before * width;
+            let from = row + (columns.start - block.origin[0]) * sample.bytes();
+            let row = (y - self.rows.start) * self.columns.len();
+            let to = &mut plane[row + columns.start - self.columns.start..][..columns.len()];
+            decode(sample, &bytes[from..from + columns.len() * sample.bytes()], to);
         }
     }
 }

@@ -1,4 +1,4 @@
-//! OpenEXR files survive being written and read, by bands and by regions.
+//! OpenEXR files are read back as they were written, by bands and by regions.
 
 use std::path::Path;
 
@@ -118,7 +118,7 @@ fn a_written_picture_opens_with_its_space_and_windows() {
 }
 
 #[test]
-fn what_cannot_be_written_is_said_and_leaves_no_file() {
+fn invalid_descriptions_and_bands_are_refused_and_leave_no_file() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("x.exr");
     let refused = |described: ExrDescription| {
@@ -129,7 +129,7 @@ fn what_cannot_be_written_is_said_and_leaves_no_file() {
     assert!(refused(description([4, 4], &[""])).starts_with("channel or attribute name \"\""));
     let attributes = Attributes::from([("dataWindow".into(), "x".into())]);
     let reserved = ExrDescription { attributes, ..description([4, 4], &["R"]) };
-    assert!(refused(reserved).ends_with("is the format's own, expected another name"));
+    assert!(refused(reserved).ends_with("expected a name that OpenEXR does not define itself"));
 
     let mut writer = ExrWriter::create(&path, description([4, 4], &["R", "G"])).unwrap();
     let error = |result: Result<(), WriteExrError>| result.unwrap_err().to_string();
@@ -166,7 +166,7 @@ fn every_compression_and_tiling_of_another_writer_reads_back() {
         for blocks in [Blocks::ScanLines, Blocks::Tiles(Vec2(16, 8)), Blocks::Tiles(Vec2(128, 128))]
         {
             let channel = |name: &str, plane: &[f32]| {
-                // B44 keeps floats as they are, and PXR24 halves.
+                // B44 stores floats without loss, and PXR24 halves.
                 let halves = plane.iter().map(|v| f16::from_f32(*v)).collect();
                 let samples = match compression {
                     exr::prelude::Compression::PXR24 => FlatSamples::F16(halves),

@@ -3,20 +3,21 @@
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::Path;
 
+use exr::compression::Compression as Method;
 use half::f16;
 use rayon::prelude::*;
 use upglow::Aside;
 use upglow_color::RgbSpace;
 
 use super::attribute::{Attributes, chromaticities};
-use super::header::{Channel, MAX_SIDE, Packing, Sample, Window, is_name, is_reserved, print};
+use super::header::{Channel, MAX_SIDE, Sample, Window, is_name, is_reserved, print};
 
-/// How blocks of rows are packed; all are without loss.
+/// How blocks of rows are compressed; all methods are lossless.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Compression {
-    /// Not at all.
+    /// Uncompressed.
     None,
-    /// Each row by itself: quick to read a texel from, a little larger.
+    /// Each row separately: faster to read single texels from, and a little larger.
     Zips,
     /// Sixteen rows together.
     #[default]
@@ -24,35 +25,34 @@ pub enum Compression {
 }
 
 impl Compression {
-    fn packing(self) -> Packing {
+    fn method(self) -> Method {
         match self {
-            Self::None => Packing::NONE,
-            Self::Zips => Packing::ZIPS,
-            Self::Zip => Packing::ZIP,
+            Self::None => Method::Uncompressed,
+            Self::Zips => Method::ZIP1,
+            Self::Zip => Method::ZIP16,
         }
     }
 }
 
-/// What an image is, before its pixels are written.
+/// The properties of an image that is to be written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExrDescription {
     /// Width and height, pixels.
     pub size: [usize; 2],
-    /// Names of the channels, in the order in which bands bring them.
+    /// Names of the channels, in the order of the planes of a band.
     pub channels: Vec<String>,
-    /// Half or float, for every channel.
+    /// Half or float, the same for all channels.
     pub sample: Sample,
-    /// How blocks are packed.
+    /// How blocks are compressed.
     pub compression: Compression,
-    /// What the file states besides.
+    /// Further attributes of the file.
     pub(crate) attributes: Attributes,
-    /// Where the picture lies, and what of the plane is seen; `None` puts its first pixel at
-    /// (0, 0) and shows all of it.
+    /// Data and display window; `None` for a picture that starts at (0, 0) and is displayed whole.
     pub(crate) windows: Option<[Window; 2]>,
 }
 
 impl ExrDescription {
-    /// An image of `size` with these channels: half, ZIP, no attributes.
+    /// An image of `size` with these channels: half precision, ZIP, no attributes.
     #[must_use]
     pub fn new(size: [usize; 2], channels: impl IntoIterator<Item = impl Into<String>>) -> Self {
         Self {
@@ -65,19 +65,13 @@ impl ExrDescription {
         }
     }
 
-    /// The same image, its samples stored so.
+    /// The same image with another type of samples.
     #[must_use]
     pub fn with_sample(self, sample: Sample) -> Self {
         Self { sample, ..self }
     }
 
-    /// The same image, packed so.
-    #[must_use]
-    pub fn with_compression(self, compression: Compression) -> Self {
-        Self { compression, ..self }
-    }
-
-    /// The same image; the file says that its colors are of this RGB space.
+    /// The same image; the file states this RGB space.
     #[must_use]
     pub fn with_space(mut self, space: &RgbSpace) -> Self {
         self.attributes.insert("chromaticities".into(), chromaticities(space));
@@ -92,65 +86,16 @@ pub enum WriteExrError {
     /// The file cannot be written.
     #[error(transparent)]
     Io(#[from] io::Error),
-    /// The picture is empty or too large.
-    #[error("{} by {} pixels, expected 1 to {MAX_SIDE} a side", .found[0], .found[1])]
-    Size {
-        /// Width and height.
-        found: [usize; 2],
-    },
-    /// A channel has no name, a name that is too long, or one with a zero byte.
-    #[error("channel or attribute name {found:?}, expected 1 to 255 characters")]
-    Name {
-        /// The name.
+    /// The description is invalid, a band does not fit it, or rows are missing.
+    #[error("{found}, expected {expected}")]
+    Invalid {
+        /// The invalid property.
         found: String,
-    },
-    /// Two channels have one name.
-    #[error("two channels named {found:?}, expected each name once")]
-    Twice {
-        /// The name.
-        found: String,
-    },
-    /// An attribute has a name that the format itself uses.
-    #[error("attribute {found:?} is the format's own, expected another name")]
-    Reserved {
-        /// The name.
-        found: String,
-    },
-    /// Samples of a kind that is not written.
-    #[error("unsigned samples, expected half or float")]
-    Sample,
-    /// A band has another number of channels than the file.
-    #[error("{found} channels in a band, expected {expected}")]
-    Channels {
-        /// Channels of the band.
-        found: usize,
-        /// Channels of the file.
-        expected: usize,
-    },
-    /// The channels of a band are not whole rows, or not equally many.
-    #[error(
-        "{found} samples in channel {channel}, expected {expected}: whole rows, the same in each channel"
-    )]
-    Samples {
-        /// The channel.
-        channel: String,
-        /// Its samples.
-        found: usize,
-        /// The samples of the band's first channel, in whole rows.
-        expected: usize,
-    },
-    /// More or fewer rows than the picture has.
-    #[error("{found} rows, expected {expected}")]
-    Rows {
-        /// Rows given.
-        found: usize,
-        /// Rows of the picture.
-        expected: usize,
+        /// What would be valid.
+        expected: String,
     },
     /// A finite number that would become infinite in half precision.
-    #[error(
-        "{value} in channel {channel}, expected at most 65504 in half precision; float holds it"
-    )]
+    #[error("{value} in channel {channel}, expected at most 65504 in half precision, or float")]
     BeyondHalf {
         /// The channel.
         channel: String,
@@ -159,54 +104,56 @@ pub enum WriteExrError {
     },
 }
 
-/// An OpenEXR file being written, by rows from top to bottom.
+impl WriteExrError {
+    fn invalid(found: impl Into<String>, expected: impl ToString) -> Self {
+        Self::Invalid { found: found.into(), expected: expected.to_string() }
+    }
+}
+
+/// An OpenEXR file that is being written from top to bottom.
 ///
-/// It appears under its name when [`ExrWriter::finish`] returns; dropped before, it leaves
-/// nothing. The same pixels give the same bytes, for any cut into bands and any number of threads.
-/// Memory: the band in the file's precision, twice where it is packed, and one block of rows.
+/// The file appears under its name when [`ExrWriter::finish`] returns; a writer that is dropped before
+/// leaves no file. The bytes depend neither on the division into bands nor on the number of threads.
+/// Memory: the band in the precision of the file, twice if it is compressed, and one block of rows.
 #[derive(Debug)]
 pub struct ExrWriter {
     file: Aside,
     description: ExrDescription,
-    /// Numbers of the caller's channels in the file's order.
+    /// Indices of the caller's channels in the order of the file.
     order: Vec<usize>,
     /// First row of the data window.
     first_row: i32,
-    /// Where the table of blocks begins.
+    /// Position of the table of blocks, bytes.
     table: u64,
-    /// Where the next block begins.
+    /// Position of the next block, bytes.
     position: u64,
     offsets: Vec<u64>,
-    /// Rows of a block that is not yet whole, in the file's layout.
+    /// Rows of an incomplete block, in the layout of the file.
     pending: Vec<u8>,
-    /// Rows given so far.
+    /// Rows received so far.
     rows: usize,
 }
 
 impl ExrWriter {
-    /// Starts the file that will stand at `path`.
+    /// Starts a file that will be named `path`.
     ///
     /// # Errors
     ///
-    /// [`WriteExrError`] if the description makes no file or the path cannot be written.
+    /// [`WriteExrError`] if the description is invalid or the path cannot be written.
     pub fn create(
         path: impl AsRef<Path>,
         description: ExrDescription,
     ) -> Result<Self, WriteExrError> {
         let windows = check(&description)?;
         let order = sorted(&description.channels)?;
-        let channels: Vec<Channel> = order
-            .iter()
-            .map(|&c| Channel {
-                name: description.channels[c].clone(),
-                sample: description.sample,
-                is_linear: false,
-            })
-            .collect();
-        let packing = description.compression.packing();
-        let header = print(&channels, packing, windows, &description.attributes);
+        let sample = description.sample;
+        let channel = |name: &String| Channel { name: name.clone(), sample, is_linear: false };
+        let channels: Vec<Channel> =
+            order.iter().map(|&c| channel(&description.channels[c])).collect();
+        let method = description.compression.method();
+        let header = print(&channels, method, windows, &description.attributes);
         let table = header.len() as u64;
-        let count = description.size[1].div_ceil(packing.rows());
+        let count = description.size[1].div_ceil(method.scan_lines_per_block());
         let mut file = Aside::create(path.as_ref())?;
         file.write_all(&header)?;
         file.write_all(&vec![0; 8 * count])?;
@@ -250,15 +197,15 @@ impl ExrWriter {
         self.write_blocks()
     }
 
-    /// Gives the file its name; returns its size in bytes.
+    /// Completes the file and gives it its name. Returns its size in bytes.
     ///
     /// # Errors
     ///
-    /// [`WriteExrError`] if rows are missing or the disk is full; then there is no file.
+    /// [`WriteExrError`] if rows are missing or the disk is full; no file is left then.
     pub fn finish(mut self) -> Result<u64, WriteExrError> {
         let expected = self.description.size[1];
         if self.rows != expected {
-            return Err(WriteExrError::Rows { found: self.rows, expected });
+            return Err(WriteExrError::invalid(format!("{} rows", self.rows), expected));
         }
         self.file.seek(SeekFrom::Start(self.table))?;
         let table: Vec<u8> = self.offsets.iter().flat_map(|at| at.to_le_bytes()).collect();
@@ -270,50 +217,46 @@ impl ExrWriter {
         self.description.size[0] * self.order.len() * self.description.sample.bytes()
     }
 
-    /// The number of rows of a band that fits.
+    /// The number of rows of a valid band.
     fn check_band(&self, channels: &[&[f32]]) -> Result<usize, WriteExrError> {
         let [width, height] = self.description.size;
         let (found, expected) = (channels.len(), self.order.len());
         if found != expected {
-            return Err(WriteExrError::Channels { found, expected });
+            return Err(WriteExrError::invalid(format!("{found} channels in a band"), expected));
         }
         let rows = channels.first().map_or(0, |c| c.len() / width);
         let names = self.description.channels.iter();
         if let Some((name, plane)) = names.zip(channels).find(|(_, c)| c.len() != rows * width) {
-            let (channel, found, expected) = (name.clone(), plane.len(), rows * width);
-            return Err(WriteExrError::Samples { channel, found, expected });
+            let found = format!("{} samples in channel {name}", plane.len());
+            let expected = format!("{}: whole rows, the same in each channel", rows * width);
+            return Err(WriteExrError::invalid(found, expected));
         }
         if self.rows + rows > height {
-            return Err(WriteExrError::Rows { found: self.rows + rows, expected: height });
+            return Err(WriteExrError::invalid(format!("{} rows", self.rows + rows), height));
         }
         Ok(rows)
     }
 
     fn check_half(&self, channels: &[&[f32]]) -> Result<(), WriteExrError> {
         let beyond = |v: &f32| v.is_finite() && v.abs() >= HALF_OVERFLOW;
-        let found = channels.par_iter().position_first(|plane| plane.iter().any(beyond));
-        let Some(channel) = found else { return Ok(()) };
-        let value = channels[channel].iter().copied().find(|v| beyond(v)).unwrap_or(f32::NAN);
-        Err(WriteExrError::BeyondHalf {
-            channel: self.description.channels[channel].clone(),
-            value,
-        })
+        let found = channels.par_iter().zip(&self.description.channels).find_map_first(
+            |(plane, channel)| Some((plane.iter().copied().find(|v| beyond(v))?, channel.clone())),
+        );
+        found.map_or(Ok(()), |(value, channel)| Err(WriteExrError::BeyondHalf { channel, value }))
     }
 
-    /// Packs and writes the whole blocks among the pending rows, and the last one at the end.
+    /// Compresses and writes the complete blocks of the pending rows; at the end also the last one.
     fn write_blocks(&mut self) -> Result<(), WriteExrError> {
-        let block_rows = self.description.compression.packing().rows();
+        let compression = self.description.compression;
+        let block_rows = compression.method().scan_lines_per_block();
         let block_bytes = (block_rows * self.row_bytes()).max(1);
         let ready = if self.rows == self.description.size[1] {
             self.pending.len()
         } else {
             self.pending.len() / block_bytes * block_bytes
         };
-        let compression = self.description.compression;
-        let packed: Vec<Vec<u8>> = self.pending[..ready]
-            .par_chunks(block_bytes)
-            .map(|block| pack(compression, block))
-            .collect();
+        let blocks = self.pending[..ready].par_chunks(block_bytes);
+        let packed: Vec<Vec<u8>> = blocks.map(|block| pack(compression, block)).collect();
         for bytes in packed {
             let row = self.offsets.len() * block_rows;
             let row = self.first_row.saturating_add(i32::try_from(row).unwrap_or(i32::MAX));
@@ -329,38 +272,43 @@ impl ExrWriter {
     }
 }
 
-/// The least number that rounds to infinity in half precision: 65504 and half a step.
+/// The smallest number that rounds to infinity in half precision: 65504 and half a step.
 const HALF_OVERFLOW: f32 = 65520.0;
 
-/// Data and display window of a description that makes a file.
+/// Data and display window of a valid description.
 fn check(description: &ExrDescription) -> Result<[Window; 2], WriteExrError> {
-    let found = description.size;
-    if found.iter().any(|side| !(1..=MAX_SIDE).contains(side)) {
-        return Err(WriteExrError::Size { found });
+    let [width, height] = description.size;
+    if description.size.iter().any(|side| !(1..=MAX_SIDE).contains(side)) {
+        let expected = format!("1 to {MAX_SIDE} a side");
+        let found = format!("{width} by {height} pixels");
+        return Err(WriteExrError::invalid(found, expected));
     }
     if description.sample == Sample::Uint {
-        return Err(WriteExrError::Sample);
+        return Err(WriteExrError::invalid("unsigned samples", "half or float"));
     }
     let mut names = description.channels.iter().chain(description.attributes.keys());
-    if let Some(found) = names.find(|name| !is_name(name)).cloned() {
-        return Err(WriteExrError::Name { found });
+    if let Some(found) = names.find(|name| !is_name(name)) {
+        let found = format!("channel or attribute name {found:?}");
+        return Err(WriteExrError::invalid(found, "1 to 255 characters"));
     }
     if let Some(found) = description.attributes.keys().find(|name| is_reserved(name)) {
-        return Err(WriteExrError::Reserved { found: found.clone() });
+        let expected = "a name that OpenEXR does not define itself";
+        return Err(WriteExrError::invalid(format!("attribute {found:?}"), expected));
     }
-    let windows = description.windows.unwrap_or([Window::of_size(found); 2]);
-    debug_assert_eq!(windows[0].size(), Some(found), "a data window of another size");
+    let windows = description.windows.unwrap_or([Window::of_size(description.size); 2]);
+    debug_assert_eq!(windows[0].size(), Some(description.size), "a data window of another size");
     Ok(windows)
 }
 
-/// The numbers of the names in alphabetical order, by bytes.
+/// The indices of the names in alphabetical order, by bytes.
 fn sorted(names: &[String]) -> Result<Vec<usize>, WriteExrError> {
     let mut order: Vec<usize> = (0..names.len()).collect();
     order.sort_by_key(|&i| names[i].as_bytes());
-    match order.windows(2).find(|pair| names[pair[0]] == names[pair[1]]) {
-        Some(pair) => Err(WriteExrError::Twice { found: names[pair[0]].clone() }),
-        None => Ok(order),
+    if let Some(pair) = order.windows(2).find(|pair| names[pair[0]] == names[pair[1]]) {
+        let found = format!("two channels named {:?}", names[pair[0]]);
+        return Err(WriteExrError::invalid(found, "each name once"));
     }
+    Ok(order)
 }
 
 fn encode(sample: Sample, values: &[f32], to: &mut [u8]) {
@@ -373,10 +321,10 @@ fn encode(sample: Sample, values: &[f32], to: &mut [u8]) {
     }
 }
 
-/// Level 1 packs a material map four times as fast as level 4, to 1.05 times the size.
+/// Level 1 compresses a material map four times as fast as level 4, to 1.05 times the size.
 const DEFLATE_LEVEL: u8 = 1;
 
-/// A block as the file holds it: packed, or as it is where packing does not shorten it.
+/// A block as the file holds it: compressed if that makes it shorter.
 fn pack(compression: Compression, block: &[u8]) -> Vec<u8> {
     if compression == Compression::None {
         return block.to_vec();
@@ -385,7 +333,7 @@ fn pack(compression: Compression, block: &[u8]) -> Vec<u8> {
     if packed.len() < block.len() { packed } else { block.to_vec() }
 }
 
-/// Even bytes, then odd bytes, each as the difference from the byte before, plus 128.
+/// Even bytes, then odd bytes, each as the difference from the byte before it, plus 128.
 ///
 /// # Source
 ///

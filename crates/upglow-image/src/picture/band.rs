@@ -5,30 +5,30 @@ use upglow_color::rounding::to_single;
 
 use super::encoding::Encoding;
 
-/// Some whole rows of a picture.
+/// Some rows of a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Band {
-    /// Number of its first row, from 0 at the top.
+    /// Its first row, from 0 at the top.
     pub first_row: usize,
     /// Pixels in a row.
     pub width: usize,
-    /// Red, green, blue of each pixel, row by row. As stored: integers as fractions, 0..=1;
-    /// floats as they are, NaN and infinities included. Gray has three equal numbers.
+    /// Red, green, blue of each pixel, row by row, as stored: integers as fractions, 0..=1; floats
+    /// unchanged, including NaN and infinities. Gray is three equal numbers.
     pub rgb: Vec<[f32; 3]>,
-    /// Alpha of each pixel, where the picture has it.
+    /// Alpha of each pixel, 0..=1, if the picture has it.
     pub alpha: Option<Vec<f32>>,
 }
 
-/// Pixels that one core decodes at a time: enough to be worth handing over.
+/// Pixels per parallel task.
 const DECODED_TOGETHER: usize = 4096;
 
 impl Band {
-    /// How many rows.
+    /// Number of rows.
     pub fn rows(&self) -> usize {
         self.rgb.len().checked_div(self.width).unwrap_or(0)
     }
 
-    /// Makes the stored numbers linear. Alpha is linear already.
+    /// Converts the stored colors to linear light. Alpha does not change.
     pub fn decode(&mut self, encoding: Encoding) {
         if encoding == Encoding::Linear {
             return;

@@ -1,13 +1,13 @@
-//! The RGB space that chromaticities in a file stand for.
+//! The RGB space of the chromaticities in a file.
 
 use upglow_color::RgbSpace;
 
-/// Files round chromaticities to four or five digits, and single precision to seven. No two
-/// built-in spaces are nearer to each other than 0.005 in some number.
+/// Greatest difference from a built-in space. Files round chromaticities to four or five digits, and
+/// any two built-in spaces differ by 0.005 or more in some number.
 const SAME: f64 = 2e-4;
 
-/// The space of these primaries (red, green, blue) and white: a built-in one where all eight
-/// numbers agree, else one named `custom`; `None` where they make no space.
+/// The space of these primaries (red, green, blue) and white: a built-in one if all eight numbers
+/// agree, else one named `custom`; `None` if the primaries or the white are invalid.
 pub(crate) fn space(primaries: [[f64; 2]; 3], white: [f64; 2]) -> Option<RgbSpace> {
     let same = |known: &RgbSpace| {
         let [red, green, blue] = known.primaries();
@@ -15,14 +15,8 @@ pub(crate) fn space(primaries: [[f64; 2]; 3], white: [f64; 2]) -> Option<RgbSpac
         let found = [primaries[0], primaries[1], primaries[2], white];
         known.as_flattened().iter().zip(found.as_flattened()).all(|(a, b)| (a - b).abs() < SAME)
     };
-    let named = RgbSpace::names().into_iter().filter_map(|name| RgbSpace::named(name).ok());
-    named.into_iter().find(same).or_else(|| RgbSpace::custom("custom", primaries, white).ok())
-}
-
-/// The same for the single-precision numbers of a file: red, green, blue, white.
-pub(crate) fn space_of_singles(found: [[f32; 2]; 4]) -> Option<RgbSpace> {
-    let [red, green, blue, white] = found.map(|c| c.map(f64::from));
-    space([red, green, blue], white)
+    let mut named = RgbSpace::names().into_iter().filter_map(|name| RgbSpace::named(name).ok());
+    named.find(same).or_else(|| RgbSpace::custom("custom", primaries, white).ok())
 }
 
 #[cfg(test)]
@@ -30,7 +24,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_built_in_space_is_found_from_its_rounded_numbers() {
+    fn every_built_in_space_is_recognized_from_rounded_numbers() {
         for name in RgbSpace::names() {
             let known = RgbSpace::named(name).unwrap();
             let round = |v: f64| (v * 1e4).round() / 1e4;
@@ -41,10 +35,10 @@ mod tests {
     }
 
     #[test]
-    fn other_primaries_are_custom_and_nonsense_is_none() {
+    fn other_primaries_are_custom_and_invalid_ones_refused() {
         let wide = space([[0.7, 0.3], [0.2, 0.75], [0.1, 0.05]], [0.3127, 0.329]).unwrap();
         assert_eq!(wide.name(), "custom");
         assert!(space([[0.0; 2]; 3], [0.0; 2]).is_none());
-        assert!(space_of_singles([[f32::NAN; 2]; 4]).is_none());
+        assert!(space([[f64::NAN; 2]; 3], [f64::NAN; 2]).is_none());
     }
 }

@@ -1,14 +1,14 @@
-//! How stored numbers stand for light, and back to light.
+//! Encodings of linear light as stored numbers.
 
 use std::fmt;
 use std::str::FromStr;
 
 use upglow_color::{UnknownChoice, srgb_decoded};
 
-/// How stored numbers stand for linear light. Negative numbers are encoded by their size.
+/// The encoding of linear light as stored numbers, odd-symmetric for negative numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Encoding {
-    /// They are linear.
+    /// Stored numbers are linear.
     Linear,
     /// The curve of sRGB.
     Srgb,
@@ -17,13 +17,13 @@ pub enum Encoding {
 }
 
 impl Encoding {
-    /// The linear number that `stored` stands for.
+    /// Converts a stored number to linear light.
     pub fn to_linear(self, stored: f64) -> f64 {
-        let size = stored.abs();
+        let magnitude = stored.abs();
         let linear = match self {
-            Self::Linear => size,
-            Self::Srgb => srgb_decoded(size),
-            Self::Gamma(gamma) => size.powf(gamma),
+            Self::Linear => magnitude,
+            Self::Srgb => srgb_decoded(magnitude),
+            Self::Gamma(gamma) => magnitude.powf(gamma),
         };
         linear.copysign(stored)
     }
@@ -63,7 +63,7 @@ mod tests {
     #[test]
     fn srgb_has_its_published_values() {
         assert_eq!([0.0, 1.0].map(|v| Encoding::Srgb.to_linear(v)), [0.0, 1.0]);
-        // Middle gray of 8 bit, from the formula to five digits.
+        // A middle gray of 8 bits, computed from the formula to five digits.
         assert!((Encoding::Srgb.to_linear(119.0 / 255.0) - 0.18448).abs() < 1e-5);
     }
 

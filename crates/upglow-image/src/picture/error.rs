@@ -12,7 +12,7 @@ pub enum PictureError {
     /// The file cannot be read.
     #[error(transparent)]
     Io(#[from] io::Error),
-    /// The file is of none of the formats.
+    /// The file is not in one of the supported formats.
     #[error("the file begins with {found:02x?}, expected an OpenEXR, TIFF or PNG picture")]
     Format {
         /// Its first bytes, four at most.
@@ -27,44 +27,34 @@ pub enum PictureError {
     /// A TIFF file that cannot be read.
     #[error("damaged, expected a whole TIFF picture")]
     Tiff(#[from] ::tiff::TiffError),
-    /// A kind of pixels that is not read.
+    /// Pixels of an unsupported type, or no unambiguous set of color channels.
     #[error("{found}, expected {expected}")]
     Pixels {
-        /// The kind.
+        /// The type, or the channels or layers of the file.
         found: String,
-        /// The kinds that are read.
+        /// What is supported.
         expected: &'static str,
     },
-    /// An OpenEXR file without one clear set of RGB channels.
-    #[error("channels {}, expected {expected}", .found.join(", "))]
-    Channels {
-        /// Channels or layers that there are, some of them if they are many.
-        found: Vec<String>,
-        /// What is read.
-        expected: &'static str,
-    },
-    /// A picture larger than this program holds.
+    /// An empty picture, or one larger than supported.
     #[error("{} by {} pixels, expected 1 to {MAX_SIDE} a side", .found[0], .found[1])]
     Size {
         /// Width and height.
         found: [usize; 2],
     },
-    /// A piece of the file that must be unpacked at once is too large.
+    /// A part of the file that must be decompressed at once is too large.
     #[error("{what} takes {found} bytes, expected at most {expected}")]
     Memory {
-        /// The piece.
+        /// The part.
         what: &'static str,
         /// Bytes it takes.
         found: u64,
-        /// The most that is given.
+        /// The limit.
         expected: u64,
     },
     /// Neither the file nor the caller names an RGB space.
-    #[error("the file does not name its RGB space, expected one to be given")]
+    #[error("the file does not name its RGB space")]
     Space,
-    /// Neither the file nor the caller says how light is stored.
-    #[error(
-        "the file does not say how it stores light, expected linear, srgb or a gamma to be given"
-    )]
+    /// Neither the file nor the caller names an encoding.
+    #[error("the file does not name its encoding: linear, srgb or a gamma")]
     Encoding,
 }

@@ -5,18 +5,18 @@ use std::path::Path;
 
 use upglow_color::RgbSpace;
 
-use super::chromaticities::space_of_singles;
+use super::chromaticities;
 use super::encoding::Encoding;
 use super::error::PictureError;
 use super::source::{Alpha, Facts, Pixels, Source};
-use crate::exr::attribute::Attribute;
+use crate::exr::error::listed;
 use crate::exr::header::{Channel, Header};
 use crate::exr::reader::ExrReader;
 
 #[derive(Debug)]
 pub(super) struct ExrPicture {
     reader: ExrReader,
-    /// Numbers of red, green and blue; three times the same for gray.
+    /// Channels of red, green and blue; three times the same for gray.
     colors: [usize; 3],
     alpha: Option<usize>,
 }
@@ -49,19 +49,16 @@ impl ExrPicture {
 
 impl Source for ExrPicture {
     fn read(&mut self, rows: Range<usize>) -> Result<Pixels, PictureError> {
-        let [red, green, blue] = self.colors;
-        let gray = red == green;
-        let colors = if gray { vec![red] } else { vec![red, green, blue] };
-        let channels: Vec<usize> = colors.into_iter().chain(self.alpha).collect();
-        let planes = self.reader.read_rows(rows, &channels)?;
-        let plane = |k: usize| &planes[if gray { 0 } else { k }];
-        let rgb = plane(0).iter().zip(plane(1)).zip(plane(2)).map(|((r, g), b)| [*r, *g, *b]);
-        let rgb = rgb.collect();
-        Ok((rgb, self.alpha.and(planes.into_iter().last())))
+        let channels: Vec<usize> = self.colors.into_iter().chain(self.alpha).collect();
+        let mut planes = self.reader.read_rows(rows, &channels)?;
+        let alpha = planes.drain(self.colors.len()..).next();
+        let colors = planes[0].iter().zip(&planes[1]).zip(&planes[2]);
+        let rgb = colors.map(|((r, g), b)| [*r, *g, *b]).collect();
+        Ok((rgb, alpha))
     }
 }
 
-/// A set of colors in a file: the part, and what stands before `R` in the channel's name.
+/// The color channels of one layer: the part, and the text before `R` in the channel's name.
 #[derive(Clone, Debug, PartialEq)]
 struct Layer {
     part: usize,
@@ -70,16 +67,13 @@ struct Layer {
 }
 
 impl Layer {
-    fn label(&self) -> String {
-        match (self.prefix.strip_suffix('.'), &self.part_name) {
-            (Some(layer), _) => layer.into(),
-            (None, Some(part)) => part.clone(),
-            (None, None) => "R, G, B".into(),
-        }
+    fn label(&self) -> &str {
+        let layer = self.prefix.strip_suffix('.');
+        layer.or(self.part_name.as_deref()).unwrap_or("R, G, B")
     }
 }
 
-/// The only plain R, G, B, or the only layer there is.
+/// The layer of the only plain R, G, B or Y, or the only layer of the file.
 fn choose(parts: &[Header]) -> Result<Layer, PictureError> {
     let all: Vec<Layer> = parts.iter().enumerate().flat_map(|(i, part)| layers(i, part)).collect();
     let only = |wanted: fn(&Layer) -> bool| {
@@ -91,27 +85,12 @@ fn choose(parts: &[Header]) -> Result<Layer, PictureError> {
 }
 
 fn not_chosen(parts: &[Header], all: &[Layer]) -> PictureError {
-    /// A line that a person reads.
-    const SHOWN: usize = 12;
-    let (names, expected): (Vec<String>, _) = match all {
-        [] => {
-            let channels = parts.iter().flat_map(|part| &part.channels);
-            (channels.map(|c| c.name.clone()).take(SHOWN + 1).collect(), "R, G, B or Y")
-        }
-        _ => (all.iter().map(Layer::label).take(SHOWN + 1).collect(), "one set of R, G, B"),
+    let channels = parts.iter().flat_map(|part| &part.channels).map(|c| c.name.as_str());
+    let (found, expected) = match all {
+        [] => (listed(channels), "R, G, B or Y"),
+        _ => (listed(all.iter().map(Layer::label)), "one set of R, G, B"),
     };
-    let mut found: Vec<String> = names.iter().map(|name| brief(name)).collect();
-    if found.len() > SHOWN {
-        found[SHOWN] = "…".into();
-    }
-    PictureError::Channels { found, expected }
-}
-
-/// A name as a part of one line.
-fn brief(name: &str) -> String {
-    /// Layers are named with a word or two.
-    const LONGEST: usize = 20;
-    name.chars().take(LONGEST).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
+    PictureError::Pixels { found: format!("channels {found}"), expected }
 }
 
 fn layers(part: usize, header: &Header) -> Vec<Layer> {
@@ -132,11 +111,12 @@ fn is_prefix(text: &str) -> bool {
 }
 
 fn space(reader: &ExrReader) -> Option<RgbSpace> {
-    match reader.attributes().get("chromaticities") {
-        Some(Attribute::Chromaticities(found)) => space_of_singles(*found),
-        _ => {
-            let aces = reader.attributes().get("acesImageContainerFlag")?;
-            RgbSpace::named("aces2065-1").ok().filter(|_| *aces == Attribute::Int(1))
-        }
+    let attributes = reader.attributes();
+    let stated = attributes.get("chromaticities");
+    if let Some(found) = stated.and_then(|value| value.as_singles("chromaticities")) {
+        let [rx, ry, gx, gy, bx, by, wx, wy] = found.map(f64::from);
+        return chromaticities::space([[rx, ry], [gx, gy], [bx, by]], [wx, wy]);
     }
+    let is_aces = attributes.get("acesImageContainerFlag")?.of_kind("int") == Some(&[1, 0, 0, 0]);
+    RgbSpace::named("aces2065-1").ok().filter(|_| is_aces)
 }

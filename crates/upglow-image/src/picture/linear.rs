@@ -1,4 +1,4 @@
-//! A picture as linear light in one RGB space, whatever its file stores.
+//! Reads pictures as linear light in a given RGB space.
 
 use std::path::Path;
 
@@ -13,35 +13,35 @@ use super::encoding::Encoding;
 use super::error::PictureError;
 use super::source::Alpha;
 
-/// What is taken for granted of files that do not say it themselves.
+/// Space and encoding of pictures that do not state them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Assumed {
-    /// Their RGB space.
+    /// The RGB space.
     pub space: Option<RgbSpace>,
-    /// How they store light.
+    /// The encoding.
     pub encoding: Option<Encoding>,
 }
 
-/// A picture opened for reading its linear light from top to bottom.
+/// Reads the linear light of a picture from top to bottom.
 #[derive(Debug)]
 pub(crate) struct LinearPicture {
     picture: Picture,
     space: RgbSpace,
     encoding: Encoding,
-    /// From its own RGB space to that which was asked for, where they differ.
+    /// From the picture's own RGB space to the one that [`LinearPicture::convert_to`] set, if different.
     conversion: Option<Matrix3>,
 }
 
-/// Two orders of the same matrices differ by this much in single precision; what is nearer to 0
-/// or 1 stands for it.
+/// Converted values that are nearer to 0 or 1 become 0 or 1: conversion to a space and back has errors of
+/// this size in single precision.
 const ROUNDING: f32 = 4e-6;
 
 impl LinearPicture {
-    /// Opens a picture. What its file says goes before what is assumed.
+    /// Opens a picture. The file's own space and encoding have priority over the assumed ones.
     ///
     /// # Errors
     ///
-    /// [`PictureError`] if it cannot be read, or nobody says what its numbers mean.
+    /// [`PictureError`] if it cannot be read, or its space or encoding is unknown.
     pub(crate) fn open(path: &Path, assumed: &Assumed) -> Result<Self, PictureError> {
         let picture = Picture::open(path)?;
         let space = picture.space().or(assumed.space.as_ref()).cloned();
@@ -54,18 +54,18 @@ impl LinearPicture {
         })
     }
 
-    /// The file's own facts.
+    /// The picture.
     pub(crate) fn picture(&self) -> &Picture {
         &self.picture
     }
 
-    /// The RGB space that it is stored in, by itself or as assumed.
+    /// The RGB space of the file, stated or assumed.
     pub(crate) fn space(&self) -> &RgbSpace {
         &self.space
     }
 
-    /// Has the rows that follow converted to the RGB space of a contract, under the contract's
-    /// light and adaptation. What rounding alone moves beyond 0 or 1 returns there.
+    /// Converts the following rows to the RGB space of a contract, under the contract's light and
+    /// adaptation. Values that are outside 0..=1 only by rounding become 0 or 1.
     pub(crate) fn convert_to(&mut self, contract: &Contract) {
         self.conversion = (self.space != contract.space).then(|| {
             let from = Contract { space: self.space.clone(), ..contract.clone() }.on(Grid::FIT);
@@ -73,8 +73,8 @@ impl LinearPicture {
         });
     }
 
-    /// Hands the bands of the rest of the picture to `act`, each of about `rows` rows, and tells
-    /// `watch` after each.
+    /// Passes the bands of the rest of the picture to `act`, each of about `rows` rows, and reports
+    /// progress to `watch` after each.
     pub(crate) fn for_each_band<E: From<PictureError> + From<Stopped>>(
         &mut self,
         rows: usize,
@@ -94,9 +94,8 @@ impl LinearPicture {
         Ok(())
     }
 
-    /// The next rows, at least `rows` of them or what is left, as linear light in the space of the
-    /// picture itself or of [`LinearPicture::convert_to`]; colors are those of the opaque picture,
-    /// whatever its alpha.
+    /// The next rows, like [`Picture::read_band`], as linear light in the picture's own space or that of
+    /// [`LinearPicture::convert_to`]. Colors are not multiplied by alpha.
     ///
     /// # Errors
     ///
@@ -110,14 +109,12 @@ impl LinearPicture {
             });
         }
         if let Some(conversion) = self.conversion {
-            band.rgb.par_iter_mut().for_each(|rgb| *rgb = converted(*rgb, conversion));
+            band.rgb.par_iter_mut().for_each(|rgb| {
+                *rgb = (conversion * rgb.map(f64::from)).map(|v| snapped(to_single(v)));
+            });
         }
         Ok(Some(band))
     }
-}
-
-fn converted(rgb: [f32; 3], conversion: Matrix3) -> [f32; 3] {
-    (conversion * rgb.map(f64::from)).map(|v| snapped(to_single(v)))
 }
 
 fn snapped(v: f32) -> f32 {
@@ -130,7 +127,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_rounding_moved_comes_back_and_the_rest_stays() {
+    fn only_values_that_rounding_moved_become_0_or_1() {
         assert_eq!([-1e-6, 0.5, 1.000_001].map(snapped), [0.0, 0.5, 1.0]);
         assert_eq!([-1e-3, 1.01].map(snapped), [-1e-3, 1.01]);
         assert!(snapped(f32::NAN).is_nan());

@@ -21,7 +21,7 @@ pub(super) struct PngPicture {
     row: Vec<u8>,
     channels: usize,
     deep: bool,
-    /// All rows of an interlaced picture, once they are read.
+    /// All rows of an interlaced picture, once it has been read.
     whole: Option<Vec<u8>>,
 }
 
@@ -31,7 +31,7 @@ impl fmt::Debug for PngPicture {
     }
 }
 
-/// What the decoder may keep besides rows: profiles and texts.
+/// Memory limit of the decoder for profiles and other chunks, bytes.
 const CHUNK_BYTES: usize = 64 << 20;
 
 impl PngPicture {
@@ -92,7 +92,7 @@ impl Source for PngPicture {
     }
 }
 
-/// Integers as fractions of the greatest, 0..=1.
+/// Converts integers to fractions of the greatest, 0..=1.
 fn to_fractions(bytes: &[u8], deep: bool, to: &mut Vec<f32>) {
     if deep {
         let words = bytes.as_chunks().0.iter();
@@ -102,7 +102,7 @@ fn to_fractions(bytes: &[u8], deep: bool, to: &mut Vec<f32>) {
     }
 }
 
-/// Space and encoding that a file states, the strongest word first.
+/// Space and encoding that a file states, from the chunk of the highest priority.
 fn color_of(info: &Info<'_>) -> (Option<RgbSpace>, Option<Encoding>) {
     if let Some(code_points) = info.coding_independent_code_points {
         return of_code_points(code_points);
@@ -132,7 +132,7 @@ fn of_gamma(stated: f64) -> Option<Encoding> {
     }
 }
 
-/// What the code points of ITU-T H.273 name, as far as there is a space or encoding for it.
+/// The space and encoding of code points of ITU-T H.273, if they are supported.
 fn of_code_points(points: CodingIndependentCodePoints) -> (Option<RgbSpace>, Option<Encoding>) {
     if points.matrix_coefficients != 0 || !points.is_video_full_range_image {
         return (None, None);

@@ -1,4 +1,4 @@
-//! What every format of pictures gives: facts, and colors by rows.
+//! The interface of the formats: facts about a picture, and colors by rows.
 
 use std::fmt::Debug;
 use std::ops::Range;
@@ -9,22 +9,22 @@ use super::encoding::Encoding;
 use super::error::PictureError;
 use crate::exr::header::{MAX_SIDE, Window};
 
-/// A picture of one format, opened.
+/// An open picture of one format.
 pub(super) trait Source: Debug + Send {
-    /// The colors of the next rows; ranges follow each other from the top.
+    /// Reads the next rows. Ranges are consecutive and start at the top.
     fn read(&mut self, rows: Range<usize>) -> Result<Pixels, PictureError>;
 }
 
-/// What alpha does to the colors beside it.
+/// How colors and alpha are combined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Alpha {
-    /// Colors are multiplied by it already, as OpenEXR has it.
+    /// Colors are multiplied by alpha, as in OpenEXR.
     Associated,
-    /// Colors are as if all were opaque, as PNG has it.
+    /// Colors are not multiplied by alpha, as in PNG.
     Straight,
 }
 
-/// What a picture says of itself.
+/// Facts about a picture.
 #[derive(Clone, Debug)]
 pub(super) struct Facts {
     pub(super) size: [usize; 2],
@@ -36,13 +36,13 @@ pub(super) struct Facts {
     pub(super) block_rows: usize,
 }
 
-/// What may be unpacked at once where a file cannot be read by bands.
+/// Most bytes that are decompressed at once if a file cannot be read by bands.
 pub(super) const MAX_AT_ONCE: u64 = 1 << 30;
 
 /// Colors and alpha of some rows.
 pub(super) type Pixels = (Vec<[f32; 3]>, Option<Vec<f32>>);
 
-/// Interleaved samples as colors and alpha.
+/// Separates interleaved samples into colors and alpha.
 ///
 /// `channels` is 1 (gray), 2 (gray and alpha), 3 (RGB) or 4 (RGB and alpha).
 pub(super) fn pixels(samples: &[f32], channels: usize) -> Pixels {
@@ -56,15 +56,11 @@ pub(super) fn pixels(samples: &[f32], channels: usize) -> Pixels {
 }
 
 pub(super) fn check_size(found: [usize; 2]) -> Result<(), PictureError> {
-    if found.iter().all(|side| (1..=MAX_SIDE).contains(side)) {
-        return Ok(());
-    }
-    Err(PictureError::Size { found })
+    let is_valid = found.iter().all(|side| (1..=MAX_SIDE).contains(side));
+    is_valid.then_some(()).ok_or(PictureError::Size { found })
 }
 
 pub(super) fn check_memory(what: &'static str, found: u64) -> Result<(), PictureError> {
-    if found <= MAX_AT_ONCE {
-        return Ok(());
-    }
-    Err(PictureError::Memory { what, found, expected: MAX_AT_ONCE })
+    let expected = MAX_AT_ONCE;
+    (found <= expected).then_some(()).ok_or(PictureError::Memory { what, found, expected })
 }

@@ -11,7 +11,7 @@ use super::band::Band;
 use super::encoding::Encoding;
 use super::source::Alpha;
 
-/// Bytes of all sizes, in a mixed order.
+/// Bytes of all values, in a mixed order.
 fn byte(i: u32) -> u8 {
     (i * 37).to_le_bytes()[0]
 }
@@ -79,7 +79,7 @@ fn an_interlaced_png_reads_as_it_was_made() {
 }
 
 #[test]
-fn a_png_says_its_space_and_encoding_or_nothing() {
+fn the_space_and_encoding_of_a_png_are_those_it_states() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("x.png");
     let write = |set: &dyn Fn(&mut png::Encoder<'_, File>)| {
@@ -135,7 +135,7 @@ fn tiff_of_each_depth_reads_back() {
 }
 
 #[test]
-fn a_tiff_says_its_primaries_and_refuses_what_is_no_color() {
+fn primaries_of_a_tiff_are_read_and_other_colors_than_rgb_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("x.tif");
     let mut encoder = TiffEncoder::new(File::create(&path).unwrap()).unwrap();

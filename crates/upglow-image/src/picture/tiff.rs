@@ -23,11 +23,11 @@ pub(super) struct TiffPicture {
     /// Columns and rows of a strip or tile.
     chunk: [usize; 2],
     channels: usize,
-    /// Planes that are stored one after another: 1 where pixels are interleaved.
+    /// Separately stored planes; 1 if pixels are interleaved.
     planes: usize,
 }
 
-/// Offsets of two million strips or tiles.
+/// Memory limit for a directory entry: the offsets of two million strips or tiles.
 const MAX_DIRECTORY_BYTES: usize = 16 << 20;
 const KINDS: &str = "gray or RGB of 8 or 16 bit integers, or 16 or 32 bit floats";
 const WHITE_POINT: Tag = Tag::Unknown(318);
@@ -76,7 +76,7 @@ impl TiffPicture {
         Ok((Box::new(Self { decoder, size, chunk, channels, planes }), facts))
     }
 
-    /// Copies a strip or tile of one plane to where its samples belong.
+    /// Copies the samples of a strip or tile of one plane to their places in `samples`.
     fn copy(
         &self,
         chunk: &[f32],
@@ -130,7 +130,7 @@ fn kind(found: String) -> PictureError {
     PictureError::Pixels { found, expected: KINDS }
 }
 
-/// Whether samples are floats, of the kinds that are read.
+/// Whether samples are floats; an error for unsupported types.
 fn check_sample(decoder: &mut Decoder<BufReader<File>>) -> Result<bool, PictureError> {
     let found = decoder.image_chunk_buffer_layout(0)?.sample_type;
     match found {
@@ -140,7 +140,7 @@ fn check_sample(decoder: &mut Decoder<BufReader<File>>) -> Result<bool, PictureE
     }
 }
 
-/// Integers as fractions of the greatest, floats as they are.
+/// Converts integers to fractions of the greatest; floats are unchanged.
 fn fractions(samples: DecodingResult) -> Result<Vec<f32>, PictureError> {
     let most = [f32::from(u8::MAX), f32::from(u16::MAX)];
     Ok(match samples {
@@ -152,7 +152,7 @@ fn fractions(samples: DecodingResult) -> Result<Vec<f32>, PictureError> {
     })
 }
 
-/// Extra sample kind 1 is associated alpha; 2, and what is not said, is not.
+/// Extra samples of type 1 are associated alpha; all others are treated as straight alpha.
 fn alpha_kind(decoder: &mut Decoder<BufReader<File>>) -> Alpha {
     match decoder.get_tag_u16_vec(Tag::ExtraSamples).as_deref() {
         Ok([1, ..]) => Alpha::Associated,
@@ -160,7 +160,7 @@ fn alpha_kind(decoder: &mut Decoder<BufReader<File>>) -> Alpha {
     }
 }
 
-/// The space of a file with primaries and white and no profile.
+/// The space of a file that states primaries and white and has no ICC profile.
 fn stated_space(decoder: &mut Decoder<BufReader<File>>) -> Option<RgbSpace> {
     if decoder.find_tag(Tag::IccProfile).ok()?.is_some() {
         return None;
@@ -171,7 +171,7 @@ fn stated_space(decoder: &mut Decoder<BufReader<File>>) -> Option<RgbSpace> {
     space([[rx, ry], [gx, gy], [bx, by]], white)
 }
 
-/// Fractions as numbers.
+/// A list of rational numbers.
 fn fraction_list(value: Value) -> Option<Vec<f64>> {
     let Value::List(values) = value else { return None };
     let number = |value: &Value| match *value {

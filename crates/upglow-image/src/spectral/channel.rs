@@ -13,12 +13,12 @@ use upglow_color::Choice as _;
 
 use crate::exr::attribute::Attributes;
 
-/// What a spectral channel holds. Wavelengths are nm, whatever unit the name was written in.
+/// A spectral channel. Wavelengths are in nm, whatever the unit in the name.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum SpectralChannel {
-    /// Radiance or its like: `S0.` and, for polarized light, `S1.` to `S3.`.
+    /// Radiance or another emissive quantity: `S0.` and, for polarized light, `S1.` to `S3.`.
     Radiance {
-        /// Number of the Stokes component, 0..=3.
+        /// The Stokes component, 0..=3.
         stokes: u8,
         /// Wavelength, nm; > 0.
         nm: f64,
@@ -29,7 +29,7 @@ pub(crate) enum SpectralChannel {
         /// Wavelength, nm; > 0.
         nm: f64,
     },
-    /// Light that comes in at one wavelength and leaves at another: `T.` with two wavelengths.
+    /// Share of light at one wavelength that leaves at another: `T.` with two wavelengths.
     Reradiation {
         /// Wavelength of the incident light, nm; > 0.
         in_nm: f64,
@@ -38,46 +38,37 @@ pub(crate) enum SpectralChannel {
     },
 }
 
-/// Why a channel's name is not one of the layout, as what the channel has.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+/// Why a name is not that of a spectral channel.
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum SpectralNameError {
-    /// The name does not begin as a spectral channel does: an ordinary channel, not a fault.
-    #[error("no spectral name, expected S0. to S3. or T.")]
+    /// The name does not begin like that of a spectral channel: an ordinary channel, not an error.
     NotSpectral,
-    /// No number where one belongs.
-    #[error("no number before {unit:?}, expected one as 550,000000nm")]
-    NoNumber { unit: String },
-    /// A point inside a number, or another part that is not a wavelength.
-    #[error("a decimal point, expected a comma as in 550,000000nm")]
-    DecimalPoint,
-    /// The number is no wavelength.
-    #[error("the number {number:?}, expected digits with at most one comma, above 0")]
-    Number { number: String },
-    /// A unit that is neither meters nor hertz.
-    #[error("the unit {unit:?}, expected m or Hz with an SI prefix, as nm or THz")]
-    Unit { unit: String },
-    /// Two wavelengths in a channel of radiance, or more than two.
-    #[error("{found} wavelengths, expected {expected}")]
-    Count { found: usize, expected: &'static str },
+    /// The name begins like that of a spectral channel, but is invalid.
+    Invalid {
+        /// The invalid part.
+        found: String,
+        /// What would be valid.
+        expected: &'static str,
+    },
 }
 
-/// SI prefixes of a thousand, a million and on, and of a thousandth, a millionth and on.
+/// SI prefixes for 10³, 10⁶ and so on, and for 10⁻³, 10⁻⁶ and so on.
 const LARGE_AND_SMALL: [&str; 2] = ["kMGTPEZY", "munpfazy"];
 
 /// Speed of light in vacuum, m/s: exact by definition.
 const LIGHT_M_PER_S: f64 = 299_792_458.0;
 
-/// Nanometers in a meter, as a power of ten.
+/// Nanometers per meter, as a power of ten.
 const NANO: i32 = 9;
 
 impl SpectralChannel {
-    /// Whether a name begins as a spectral channel's does, well-formed or not.
+    /// Whether a name begins like that of a spectral channel, valid or not.
     pub(crate) fn is_spectral(name: &str) -> bool {
         split(name).is_some()
     }
 
-    /// Number of the kind (the Stokes component, then reflectance, then re-radiation) and wavelengths,
-    /// nm: 0 where there is no second one.
+    /// Index of the kind (the Stokes component, then reflectance, then re-radiation) and wavelengths in
+    /// nm, of which a missing second one is 0.
     pub(crate) fn key(self) -> (u8, [f64; 2]) {
         match self {
             Self::Radiance { stokes, nm } => (stokes, [nm, 0.0]),
@@ -93,13 +84,13 @@ pub(crate) fn key_order(a: (u8, [f64; 2]), b: (u8, [f64; 2])) -> Ordering {
     a.0.cmp(&b.0).then(waves(0)).then(waves(1))
 }
 
-/// Numbers of the incident and the outgoing band of each pair with a channel of its own: the
-/// outgoing wavelength is the longer one.
+/// Indices of the incident and the outgoing band of each pair that has a channel: those with the longer
+/// wavelength outgoing.
 pub(crate) fn rising_pairs(bands: usize) -> impl Iterator<Item = [usize; 2]> {
     (0..bands).flat_map(move |incident| (incident + 1..bands).map(move |o| [incident, o]))
 }
 
-/// The kind, `S0` to `S3` or `T`, and what follows its point.
+/// The kind, `S0` to `S3` or `T`, and the rest of the name after the point.
 fn split(name: &str) -> Option<(&str, &str)> {
     let (kind, rest) = name.split_once('.')?;
     matches!(kind, "S0" | "S1" | "S2" | "S3" | "T").then_some((kind, rest))
@@ -113,10 +104,10 @@ impl FromStr for SpectralChannel {
             return Err(SpectralNameError::NotSpectral);
         };
         let parts: Vec<&str> = rest.split('.').collect();
-        // A part of digits alone is the whole part of a number with a point.
-        let digits = |part: &str| !part.is_empty() && part.bytes().all(|b| b.is_ascii_digit());
-        if parts.len() > 1 && parts[..parts.len() - 1].iter().any(|part| digits(part)) {
-            return Err(SpectralNameError::DecimalPoint);
+        // Digits without a unit are the integer part of a number with a decimal point.
+        let digits = |part: &&str| !part.is_empty() && part.bytes().all(|b| b.is_ascii_digit());
+        if parts[..parts.len() - 1].iter().any(digits) {
+            return Err(invalid("a decimal point", "a comma as in 550,000000nm"));
         }
         let waves = parts.iter().map(|part| wavelength_nm(part)).collect::<Result<Vec<_>, _>>()?;
         let stokes = kind.as_bytes().get(1).map(|digit| digit - b'0');
@@ -126,11 +117,14 @@ impl FromStr for SpectralChannel {
             (None, &[in_nm, out_nm]) => Ok(Self::Reradiation { in_nm, out_nm }),
             (stokes, _) => {
                 let expected = if stokes.is_some() { "1" } else { "1 or 2" };
-                let found = waves.len();
-                Err(SpectralNameError::Count { found, expected })
+                Err(invalid(format!("{} wavelengths", waves.len()), expected))
             }
         }
     }
+}
+
+fn invalid(found: impl Into<String>, expected: &'static str) -> SpectralNameError {
+    SpectralNameError::Invalid { found: found.into(), expected }
 }
 
 /// One wavelength or frequency, as `550,000000nm` or `545THz`, in nm.
@@ -138,19 +132,23 @@ fn wavelength_nm(text: &str) -> Result<f64, SpectralNameError> {
     let end = text.find(|c: char| !(c.is_ascii_digit() || c == ',')).unwrap_or(text.len());
     let (number, unit) = number_and_unit(text, end);
     if number.is_empty() {
-        return Err(SpectralNameError::NoNumber { unit: unit.into() });
+        return Err(invalid(format!("no number before {unit:?}"), "one as 550,000000nm"));
     }
     let power = |base: &str| prefix_power(unit.strip_suffix(base)?);
     let nm = match (power("Hz"), power("m")) {
         (Some(power), _) => parse(number, power).map(|hz| LIGHT_M_PER_S / hz * 1e9),
         (None, Some(power)) => parse(number, power + NANO),
-        _ => return Err(SpectralNameError::Unit { unit: unit.into() }),
+        _ => {
+            let expected = "m or Hz with an SI prefix, as nm or THz";
+            return Err(invalid(format!("the unit {unit:?}"), expected));
+        }
     };
-    nm.filter(|nm| nm.is_finite() && *nm > 0.0)
-        .ok_or_else(|| SpectralNameError::Number { number: number.into() })
+    nm.filter(|nm| nm.is_finite() && *nm > 0.0).ok_or_else(|| {
+        invalid(format!("the number {number:?}"), "digits with at most one comma, above 0")
+    })
 }
 
-/// The power of ten that an SI prefix stands for.
+/// The power of ten of an SI prefix.
 fn prefix_power(prefix: &str) -> Option<i32> {
     let [thousands, thousandths] = LARGE_AND_SMALL
         .map(|letters| (1..).zip(letters.chars()).find(|(_, c)| prefix.chars().eq([*c])));
@@ -164,7 +162,7 @@ fn prefix_power(prefix: &str) -> Option<i32> {
     }
 }
 
-/// Splits at the unit; an exponent, as in `5,5e2nm`, belongs to the number.
+/// Splits before the unit; an exponent, as in `5,5e2nm`, belongs to the number.
 fn number_and_unit(text: &str, end: usize) -> (&str, &str) {
     let (number, rest) = text.split_at(end);
     let exponent = rest.strip_prefix(['e', 'E']).filter(|_| !number.is_empty());
@@ -178,7 +176,7 @@ fn number_and_unit(text: &str, end: usize) -> (&str, &str) {
     text.split_at(length)
 }
 
-/// The number times a power of ten, rounded once: 550 n is exactly 550 nm.
+/// The number times a power of ten, rounded once, so that 550nm is exactly 550 nm.
 fn parse(number: &str, power: i32) -> Option<f64> {
     let plain = number.replacen(',', ".", 1);
     if plain.contains(',') || plain == "." {
@@ -190,7 +188,7 @@ fn parse(number: &str, power: i32) -> Option<f64> {
 }
 
 impl fmt::Display for SpectralChannel {
-    /// The name of the channel, in nm to six decimals, as the layout's reference writes it.
+    /// The name of the channel, in nm with six decimals like the reference implementation of the layout.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let wave = |nm: f64| format!("{nm:.6}nm").replace('.', ",");
         match *self {
@@ -201,16 +199,16 @@ impl fmt::Display for SpectralChannel {
     }
 }
 
-/// The attribute that says which version of the layout a file follows.
+/// Attribute: the version of the layout.
 pub(crate) const LAYOUT_VERSION: &str = "spectralLayoutVersion";
-/// The version that this program reads and writes.
+/// The version that upglow reads and writes.
 pub(crate) const LAYOUT_VERSION_VALUE: &str = "1.0";
-/// The attribute that says the unit of `S0.` channels.
+/// Attribute: the unit of `S0.` channels.
 pub(crate) const EMISSIVE_UNITS: &str = "emissiveUnits";
-/// Our attribute that says what re-radiation channels hold: the layout itself does not.
+/// Attribute of upglow: the unit of re-radiation channels, which the layout does not specify.
 pub(crate) const BISPECTRAL_UNIT: &str = "upglow.bispectralUnit";
 
-/// What a re-radiation channel holds.
+/// The unit of re-radiation channels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BispectralUnit {
     /// Share of the incident power that leaves within the band of the outgoing wavelength.
@@ -227,7 +225,7 @@ upglow_color::choices!(
 );
 
 impl BispectralUnit {
-    /// The unit that a file states, if it states one.
+    /// The unit that a file states, if it is a known one.
     pub(crate) fn stated(attributes: &Attributes) -> Option<Self> {
         Self::named(attributes.get(BISPECTRAL_UNIT)?.as_text()?).ok()
     }
@@ -243,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn names_of_other_programs_are_read_by_number() {
+    fn other_spellings_of_names_are_read() {
         for name in
             ["T.550,000000nm", "T.550,000nm", "T.550nm", "T.5,5e2nm", "T.0,55um", "T.55e1nm"]
         {
@@ -258,29 +256,36 @@ mod tests {
     }
 
     #[test]
-    fn broken_names_are_refused_with_their_fault() {
-        use SpectralNameError as E;
-        assert!(matches!(read("T.nm"), Err(E::NoNumber { .. })));
-        assert!(matches!(read("T."), Err(E::NoNumber { .. })));
-        assert!(matches!(read("S0.Hz"), Err(E::NoNumber { .. })));
-        assert!(matches!(read("T.550.5nm"), Err(E::DecimalPoint)));
-        assert!(matches!(read("T.550.000000nm.560.000000nm"), Err(E::DecimalPoint)));
-        assert!(matches!(read("T.550"), Err(E::Unit { .. })));
-        assert!(matches!(read("T.550qm"), Err(E::Unit { .. })));
-        assert!(matches!(read("T.5,5,0nm"), Err(E::Number { .. })));
-        assert!(matches!(read("T.,nm"), Err(E::Number { .. })));
-        assert!(matches!(read("T.0nm"), Err(E::Number { .. })));
-        assert!(matches!(read("T.1e400nm"), Err(E::Number { .. })));
-        assert!(matches!(read("S0.400nm.500nm"), Err(E::Count { .. })));
-        assert!(matches!(read("T.400nm.500nm.600nm"), Err(E::Count { .. })));
-        assert!(matches!(read("R"), Err(E::NotSpectral)));
-        assert!(matches!(read("S0.T.550nm"), Err(E::NoNumber { .. })));
-        assert!(matches!(read("S4.550nm"), Err(E::NotSpectral)));
+    fn invalid_names_are_refused_with_the_invalid_part() {
+        for (name, expected) in [
+            ("T.nm", "no number before \"nm\""),
+            ("T.", "no number before \"\""),
+            ("S0.Hz", "no number before \"Hz\""),
+            ("S0.T.550nm", "no number before \"T\""),
+            ("T.550.5nm", "a decimal point"),
+            ("T.550.000000nm.560.000000nm", "a decimal point"),
+            ("T.550", "the unit \"\""),
+            ("T.550qm", "the unit \"qm\""),
+            ("T.5,5,0nm", "the number \"5,5,0\""),
+            ("T.,nm", "the number \",\""),
+            ("T.0nm", "the number \"0\""),
+            ("T.1e400nm", "the number \"1e400\""),
+            ("S0.400nm.500nm", "2 wavelengths"),
+            ("T.400nm.500nm.600nm", "3 wavelengths"),
+        ] {
+            let Err(SpectralNameError::Invalid { found, .. }) = read(name) else {
+                panic!("{name} is accepted");
+            };
+            assert_eq!(found, expected, "{name}");
+        }
+        for name in ["R", "S4.550nm"] {
+            assert_eq!(read(name), Err(SpectralNameError::NotSpectral));
+        }
     }
 
     proptest! {
         #[test]
-        fn names_survive_printing(micro in 1_u32..4_000_000_000, other in 1_u32..4_000_000_000, stokes in 0_u8..4) {
+        fn printed_names_are_read_back(micro in 1_u32..4_000_000_000, other in 1_u32..4_000_000_000, stokes in 0_u8..4) {
             let nm = |n: u32| f64::from(n) / 1e6;
             for channel in [
                 SpectralChannel::Reflectance { nm: nm(micro) },

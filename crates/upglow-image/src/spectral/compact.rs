@@ -1,6 +1,6 @@
-//! The compact bispectral form: one reflectance per band, one map per dye, and the curves once.
+//! The compact bispectral form: one reflectance per band, one map per dye, and the curves as attributes.
 //!
-//! `docs/spectral-exr.md` describes it for readers in other languages.
+//! `docs/spectral-exr.md` specifies it for other programs.
 
 mod dye;
 mod stated;
@@ -9,27 +9,26 @@ use upglow::{Accounting, Bispectral, DyeModel, Fluorescence, Mixing, Mixture};
 use upglow_color::rounding::to_single;
 use upglow_color::{Grid, choices};
 
-use self::dye::{CompactDye, dye_attribute};
-use self::stated::{Stated, wrong};
+use self::dye::{CompactDye, curve};
+use self::stated::{choice, stated};
 use super::channel::SpectralChannel;
 use super::error::FormError;
 use crate::exr::attribute::Attributes;
 
-/// What the maps beside the reflectances hold.
+/// The meaning of the maps beside the reflectances.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum CompactForm {
-    /// One map for each dye of the ring: how much of it is there. Exact for a single material,
-    /// whose dyes are pooled or not, and for every mixture where each dye acts for itself; there maps
-    /// may also be filtered.
+    /// One map per dye of the ring: its amount. Exact for single materials, and for mixtures of
+    /// separate dyes; the maps of separate dyes may also be filtered.
     PerDye,
     /// Four pairs of maps: the position of a material on the ring of dyes, and its strength.
-    /// Exact for every mixture of a look-up, of any ring; needs float samples and no filter.
+    /// Exact for every mixture of a look-up; needs float samples and must not be filtered.
     PerLobe,
 }
 
 choices!(CompactForm, "compact form", PerDye = "dyes", PerLobe = "lobes");
 
-/// The most channels beside the reflectances.
+/// Most channels beside the reflectances.
 pub(crate) const MOST_EXTRA_CHANNELS: usize = 12;
 /// Materials in a mixture.
 const LOBES: usize = 4;
@@ -44,10 +43,17 @@ pub(crate) struct CompactLayout {
     form: CompactForm,
 }
 
-/// Dyes that act together: the share of each in the lobe, and the strength of the lobe.
-struct Lobe<'s> {
+/// Dyes that act together: the strength of the lobe, and the share of each dye in it.
+struct Lobe {
     strength: f64,
-    shares: &'s [(usize, f64)],
+    shares: Vec<(usize, f64)>,
+}
+
+impl Lobe {
+    /// The mean of a property of the dyes.
+    fn mean(&self, dyes: &[CompactDye], of: impl Fn(&CompactDye) -> f64) -> f64 {
+        self.shares.iter().map(|&(dye, share)| share * of(&dyes[dye])).sum()
+    }
 }
 
 const VERSION: &str = "upglow.compact";
@@ -58,11 +64,11 @@ const ACCOUNTING: &str = "upglow.compact.accounting";
 const DYES: &str = "upglow.compact.dyes";
 
 impl CompactLayout {
-    /// The form for materials of `model` on the bands around `grid`'s wavelengths.
+    /// The layout for materials of `model` on the bands around the wavelengths of `grid`.
     ///
     /// # Errors
     ///
-    /// [`FormError`] if the ring has more dyes than the form has maps, or two of one name.
+    /// [`FormError`] if the ring has more dyes than the form has maps, or two dyes have the same name.
     pub(crate) fn new(model: &DyeModel, grid: Grid, form: CompactForm) -> Result<Self, FormError> {
         let half = f64::from(grid.step_nm()) / 2.0;
         let wavelengths_nm: Vec<f64> = grid.wavelengths_nm().collect();
@@ -88,7 +94,7 @@ impl CompactLayout {
         Ok(layout)
     }
 
-    /// What the maps hold.
+    /// The meaning of the maps.
     pub(crate) fn form(&self) -> CompactForm {
         self.form
     }
@@ -109,7 +115,7 @@ impl CompactLayout {
         }
     }
 
-    /// What a file in this form states, besides what the spectral layout asks for.
+    /// The attributes of the form, without those of the spectral layout.
     pub(crate) fn attributes(&self) -> Attributes {
         let names: Vec<&str> = self.dyes.iter().map(|d| d.name.as_str()).collect();
         let mut attributes = Attributes::from([
@@ -128,72 +134,74 @@ impl CompactLayout {
         attributes.contains_key(VERSION)
     }
 
-    /// The form that a file states.
+    /// Reads the layout of a file.
     ///
     /// # Errors
     ///
-    /// [`FormError::Attribute`] names what is absent or wrong.
+    /// [`FormError::Attribute`] names an attribute that is absent or invalid.
     pub(crate) fn from_attributes(attributes: &Attributes) -> Result<Self, FormError> {
-        let stated = Stated(attributes);
-        stated.word(VERSION, &[VERSION_VALUE])?;
-        let form = stated.choice(FORM)?;
-        let mixing = stated.choice(MIXING)?;
-        let accounting = stated.choice(ACCOUNTING)?;
-        let names = stated.text(DYES, "names separated by semicolons")?;
-        let dyes = names.split(';').map(|name| CompactDye::stated(&stated, name));
-        let dyes = dyes.collect::<Result<Vec<_>, _>>()?;
-        let wavelengths_nm = dyes[0].0.clone();
-        if let Some((_, dye)) = dyes.iter().find(|(nm, _)| *nm != wavelengths_nm) {
-            let name = dye_attribute(&dye.name, "absorption");
-            return Err(wrong(&name, "on others", "the wavelengths of the first dye"));
-        }
-        let dyes = dyes.into_iter().map(|(_, dye)| dye).collect();
+        let is_version = |text: &str| (text == VERSION_VALUE).then_some(());
+        stated(attributes, VERSION, VERSION_VALUE, is_version)?;
+        let (form, mixing) = (choice(attributes, FORM)?, choice(attributes, MIXING)?);
+        let accounting = choice(attributes, ACCOUNTING)?;
+        let split = |text: &str| Some(text.split(';').map(str::to_owned).collect::<Vec<_>>());
+        let names = stated(attributes, DYES, "names separated by semicolons", split)?;
+        let (wavelengths_nm, _) = curve(attributes, &names[0], "absorption", None)?;
+        let dyes = names.iter().map(|name| CompactDye::stated(attributes, name, &wavelengths_nm));
+        let dyes = dyes.collect::<Result<_, _>>()?;
         let layout = Self { wavelengths_nm, dyes, accounting, mixing, form };
         layout.check()?;
         Ok(layout)
     }
 
-    /// Whether each dye has a map and a name of its own.
+    /// Checks that each dye has a map and a unique name.
     fn check(&self) -> Result<(), FormError> {
-        let found = self.dyes.len();
-        if self.form == CompactForm::PerDye && found > MOST_EXTRA_CHANNELS {
-            return Err(FormError::Dyes { found, most: MOST_EXTRA_CHANNELS });
+        let count = self.dyes.len();
+        if self.form == CompactForm::PerDye && count > MOST_EXTRA_CHANNELS {
+            let found = format!("{count} dyes");
+            let expected =
+                format!("1 to {MOST_EXTRA_CHANNELS} with a map each, or the form of lobes");
+            return Err(FormError::Dyes { found, expected });
         }
-        let is_twin = |i: usize| self.dyes[..i].iter().any(|dye| dye.name == self.dyes[i].name);
-        match (0..found).find(|&i| is_twin(i)) {
-            Some(i) => Err(FormError::Twice { name: self.dyes[i].name.clone() }),
-            None => Ok(()),
-        }
+        let mut names = self.dyes.iter().map(|dye| &dye.name).enumerate();
+        let twin = names.find(|(i, name)| self.dyes[..*i].iter().any(|dye| dye.name == **name));
+        twin.map_or(Ok(()), |(_, name)| {
+            let found = format!("two dyes are named {name:?} in channels");
+            Err(FormError::Dyes { found, expected: "different names".into() })
+        })
     }
 
     /// The values of a texel with this mixture, in the order of [`CompactLayout::channel_names`].
     ///
-    /// The reflectance of a band is the diagonal of the re-radiation matrix: what is reflected, and what
-    /// fluorescence returns within the band. `None` if the form cannot hold the mixture exactly: maps
-    /// for each dye no materials of different pooled dyes, lobes no more than four.
+    /// The reflectance of a band is the diagonal of the re-radiation matrix: the reflected light, and
+    /// the light that is re-emitted within the band. `None` if the form cannot hold the mixture exactly:
+    /// maps of dyes cannot hold materials of different pooled dyes, and lobes hold at most four
+    /// materials.
     pub(crate) fn encode(&self, mixture: &Mixture<'_>) -> Option<Vec<f32>> {
         let maps = match self.form {
             CompactForm::PerDye => self.dye_maps(mixture)?,
             CompactForm::PerLobe => lobe_maps(mixture)?,
         };
         let maps: Vec<f32> = maps.into_iter().map(to_single).collect();
+        let lobes = self.lobes(&maps);
         let bands = self.wavelengths_nm.iter().enumerate();
         let diagonal =
-            bands.map(|(i, &nm)| to_single(mixture.reflectance(nm) + self.moved(&maps, i, i)));
+            bands.map(|(i, &nm)| to_single(mixture.reflectance(nm) + self.moved(&lobes, i, i)));
         Some(diagonal.chain(maps.iter().copied()).collect())
     }
 
-    /// The re-radiation matrix of a texel, `[outgoing][incident]`: all that the compact form leaves
-    /// out. On the diagonal also what is reflected. `None` if there is not one value for each channel.
+    /// The re-radiation matrix of a texel, `[outgoing][incident]`, with the reflectance on the diagonal.
+    /// `None` unless there is one value per channel.
     pub(crate) fn expand(&self, texel: &[f32]) -> Option<Vec<Vec<f32>>> {
         let bands = self.wavelengths_nm.len();
         if texel.len() != bands + self.map_names().len() {
             return None;
         }
         let (reflectances, maps) = texel.split_at(bands);
+        let lobes = self.lobes(maps);
         let share = |outgoing: usize, incident: usize| match incident == outgoing {
             true => reflectances[incident],
-            false => to_single(self.moved(maps, incident, outgoing)),
+            false => to_single(self.moved(&lobes, incident, outgoing)),
         };
         Some((0..bands).map(|o| (0..bands).map(|i| share(o, i)).collect()).collect())
     }
@@ -203,63 +211,60 @@ impl CompactLayout {
         &self.wavelengths_nm
     }
 
-    /// Share of the power in one band that fluorescence moves to another or leaves there.
-    fn moved(&self, maps: &[f32], incident: usize, outgoing: usize) -> f64 {
-        let mut sum = 0.0;
-        self.for_each_lobe(maps, |lobe| {
-            let mean = |of: &dyn Fn(&CompactDye) -> f64| -> f64 {
-                lobe.shares.iter().map(|&(dye, share)| share * of(&self.dyes[dye])).sum()
-            };
+    /// Share of the power in the incident band that is re-emitted in the outgoing band.
+    fn moved(&self, lobes: &[Lobe], incident: usize, outgoing: usize) -> f64 {
+        lobes.iter().fold(0.0, |sum, lobe| {
+            let mean = |of: &dyn Fn(&CompactDye) -> f64| lobe.mean(&self.dyes, of);
             let absorbed = lobe.strength * mean(&|dye| dye.absorption[incident]);
             let mean_emission_nm = mean(&|dye| dye.mean_emission_nm);
             let returned = self.accounting.share(self.wavelengths_nm[incident], mean_emission_nm);
             let quantum_yield = mean(&|dye| dye.quantum_yield);
-            sum += absorbed * quantum_yield * returned * mean(&|dye| dye.emission[outgoing]);
-        });
-        sum
+            sum + absorbed * quantum_yield * returned * mean(&|dye| dye.emission[outgoing])
+        })
     }
 
-    /// The lobes that the maps of a texel stand for.
-    fn for_each_lobe(&self, maps: &[f32], mut act: impl FnMut(&Lobe<'_>)) {
+    /// The lobes of a texel with these maps.
+    fn lobes(&self, maps: &[f32]) -> Vec<Lobe> {
         let count = self.dyes.len();
-        let mut together = |strength: f64, shares: &[(usize, f64)]| match self.mixing {
-            _ if strength <= 0.0 || !strength.is_finite() => {}
-            Mixing::Pooled => act(&Lobe { strength, shares }),
-            Mixing::Separate => {
-                for &(dye, share) in shares {
-                    act(&Lobe { strength: strength * share, shares: &[(dye, 1.0)] });
-                }
-            }
+        let of_position = |&[position, strength]: &[f32; 2]| {
+            let position = f64::from(position).rem_euclid(count as f64);
+            let first = (0..count).rev().find(|&dye| dye as f64 <= position).unwrap_or(0);
+            let weight = position - first as f64;
+            let shares = vec![(first, 1.0 - weight), ((first + 1) % count, weight)];
+            Lobe { strength: f64::from(strength), shares }
         };
-        match self.form {
+        let mut lobes: Vec<Lobe> = match self.form {
+            CompactForm::PerLobe => maps.as_chunks().0.iter().map(of_position).collect(),
             CompactForm::PerDye => {
                 let amounts = maps.iter().map(|&k| f64::from(k)).enumerate();
                 let present: Vec<(usize, f64)> = amounts.filter(|(_, k)| *k > 0.0).collect();
-                let total = present.iter().map(|(_, k)| k).sum::<f64>();
-                let shares: Vec<_> = present.iter().map(|&(dye, k)| (dye, k / total)).collect();
-                together(total, &shares);
+                let strength = present.iter().map(|(_, k)| k).sum::<f64>();
+                let shares = present.into_iter().map(|(dye, k)| (dye, k / strength)).collect();
+                vec![Lobe { strength, shares }]
             }
-            CompactForm::PerLobe => {
-                for &[position, strength] in maps.as_chunks().0 {
-                    let position = f64::from(position).rem_euclid(count as f64);
-                    let first = (0..count).rev().find(|&dye| dye as f64 <= position).unwrap_or(0);
-                    let weight = position - first as f64;
-                    let shares = [(first, 1.0 - weight), ((first + 1) % count, weight)];
-                    together(f64::from(strength), &shares);
-                }
-            }
+        };
+        lobes.retain(|lobe| lobe.strength > 0.0 && lobe.strength.is_finite());
+        if self.mixing == Mixing::Pooled {
+            return lobes;
         }
+        let dyes =
+            lobes.iter().flat_map(|lobe| lobe.shares.iter().map(|dye| (lobe.strength, *dye)));
+        let alone = |(strength, (dye, share))| Lobe {
+            strength: strength * share,
+            shares: vec![(dye, 1.0)],
+        };
+        dyes.map(alone).collect()
     }
 
-    /// How much of each dye there is.
+    /// The amount of each dye.
     fn dye_maps(&self, mixture: &Mixture<'_>) -> Option<Vec<f64>> {
         let parts = fluorescent_parts(mixture);
         let pooled = self.mixing == Mixing::Pooled;
-        if pooled && parts.iter().any(|part| part.first != parts[0].first) {
+        if pooled && parts.iter().any(|part| part.0 != parts[0].0) {
             return None;
         }
         let mut amounts = vec![0.0; self.dyes.len()];
-        for FluorescentPart { first, weight, strength } in parts {
+        for (first, weight, strength) in parts {
             amounts[first] += strength * (1.0 - weight);
             amounts[(first + 1) % self.dyes.len()] += strength * weight;
         }
@@ -270,7 +275,7 @@ impl CompactLayout {
 /// Position and strength of each material.
 fn lobe_maps(mixture: &Mixture<'_>) -> Option<Vec<f64>> {
     let parts = fluorescent_parts(mixture);
-    let pairs = parts.iter().map(|part| [part.first as f64 + part.weight, part.strength]);
+    let pairs = parts.iter().map(|(first, weight, strength)| [*first as f64 + weight, *strength]);
     let mut maps: Vec<f64> = pairs.flatten().collect();
     (parts.len() <= LOBES).then(|| {
         maps.resize(2 * LOBES, 0.0);
@@ -278,28 +283,20 @@ fn lobe_maps(mixture: &Mixture<'_>) -> Option<Vec<f64>> {
     })
 }
 
-/// A fluorescent material in a mixture.
-struct FluorescentPart {
-    /// Number of its first dye.
-    first: usize,
-    /// Share of that dye's neighbor.
-    weight: f64,
-    /// Its concentration, times its share of the mixture.
-    strength: f64,
-}
-
-fn fluorescent_parts(mixture: &Mixture<'_>) -> Vec<FluorescentPart> {
+/// The fluorescent materials of a mixture: the first dye, the share of its neighbor, and the
+/// concentration times the material's share of the mixture.
+fn fluorescent_parts(mixture: &Mixture<'_>) -> Vec<(usize, f64, f64)> {
     let parts = mixture.parts();
     let fluorescent = parts.filter_map(|(part, material)| match material.fluorescence {
         Fluorescence::Dyes { first, weight, concentration } if part * concentration > 0.0 => {
-            Some(FluorescentPart { first, weight, strength: part * concentration })
+            Some((first, weight, part * concentration))
         }
         _ => None,
     });
     fluorescent.collect()
 }
 
-/// A dye's name as a channel can have it: letters, digits, `-`, `_`, and `_` for all else.
+/// The name of a dye in channel names: characters other than letters, digits, `-` and `_` become `_`.
 fn channel_word(name: &str) -> String {
     /// Leaves room for `dye.` and keeps attribute names within the format's 255 bytes.
     const LONGEST: usize = 200;
@@ -309,6 +306,7 @@ fn channel_word(name: &str) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::dye::dye_attribute;
     use super::*;
     use proptest::prelude::*;
     use upglow::{
@@ -380,7 +378,7 @@ mod tests {
         }
     }
 
-    /// A cube whose nodes differ, so that a look-up mixes four of them.
+    /// A cube whose nodes differ, so that a look-up blends four of them.
     fn cube(dyes: DyeModel) -> Cube {
         let node = |i: u16| {
             let u = f64::from(i) / 27.0;
@@ -421,7 +419,7 @@ mod tests {
     }
 
     #[test]
-    fn the_form_survives_its_attributes_and_has_at_most_twelve_maps() {
+    fn the_layout_is_read_back_from_its_attributes_and_has_at_most_twelve_maps() {
         for dyes in models() {
             for form in [CompactForm::PerDye, CompactForm::PerLobe] {
                 let layout = CompactLayout::new(&dyes, bands(), form).unwrap();
@@ -433,7 +431,7 @@ mod tests {
     }
 
     #[test]
-    fn attributes_that_lie_are_refused_by_name() {
+    fn invalid_attributes_are_refused_by_name() {
         let layout = CompactLayout::new(&models()[0], bands(), CompactForm::PerDye).unwrap();
         let with = |name: &str, value: &str| {
             let mut attributes = layout.attributes();
@@ -449,7 +447,7 @@ mod tests {
         for broken in ["", "400nm", "400nm:2", "410nm:0;400nm:0", "400,0nm:0.5", "400nm:NaN"] {
             assert!(with(&absorption, broken).contains("expected numbers from 0 to 1"), "{broken}");
         }
-        assert!(with(&absorption, "400nm:0.5;").contains("expected the absorption's wavelengths"));
+        assert!(with(&absorption, "400nm:0.5;").contains("the same in all curves"));
         assert!(with(DYES, "").contains("absorption is absent"));
         assert!(with(&dye_attribute(&dye, "quantumYield"), "1.5").contains("from 0 to 1"));
         assert_eq!(layout.expand(&[0.0]), None);

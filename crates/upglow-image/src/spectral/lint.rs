@@ -1,4 +1,4 @@
-//! Whether a file is a well-formed spectral or bispectral OpenEXR file, and what is wrong.
+//! Checks spectral and bispectral OpenEXR files.
 
 mod channels;
 pub(crate) mod findings;
@@ -20,11 +20,11 @@ use crate::exr::error::ExrError;
 use crate::exr::reader::ExrReader;
 
 impl Lint {
-    /// Checks the names and attributes of a file. What is wrong with it is a finding, not an error.
+    /// Checks the names and attributes of a file. Broken rules are findings, not errors.
     ///
     /// # Errors
     ///
-    /// [`ExrError`] if it is no OpenEXR file that can be read.
+    /// [`ExrError`] if the file cannot be read as OpenEXR.
     pub fn of_header(path: impl AsRef<Path>) -> Result<Self, ExrError> {
         let reader = ExrReader::open(path)?;
         let mut lint = Self::default();
@@ -32,11 +32,11 @@ impl Lint {
         Ok(lint)
     }
 
-    /// Checks every sample too, by rows: it takes the memory of one row of blocks in all channels.
+    /// Checks the names, attributes and samples of a file, in the memory of one row of blocks.
     ///
     /// # Errors
     ///
-    /// [`ExrError`] if it is no OpenEXR file that can be read, or is damaged.
+    /// [`ExrError`] if the file cannot be read as OpenEXR, or is damaged.
     pub fn of_file(path: impl AsRef<Path>) -> Result<Self, ExrError> {
         let mut reader = ExrReader::open(path)?;
         let mut lint = Self::default();
@@ -46,7 +46,7 @@ impl Lint {
     }
 }
 
-/// Checks names and attributes; the well-formed spectral channels.
+/// Checks names and attributes. Returns the spectral channels with valid names.
 fn check_header(reader: &ExrReader, lint: &mut Lint) -> Vec<ListedChannel> {
     let channels = list(reader, lint);
     count(&channels, lint);
@@ -71,11 +71,8 @@ fn count(channels: &[ListedChannel], lint: &mut Lint) {
                     let diagonal = SpectralChannel::Reflectance { nm: in_nm };
                     lint.add(Rule::Diagonal, name.clone(), format!("{diagonal} for the diagonal"));
                 } else if out_nm < in_nm {
-                    lint.add(
-                        Rule::Stokes,
-                        name.clone(),
-                        "an outgoing wavelength above the incident",
-                    );
+                    let expected = "an outgoing wavelength above the incident";
+                    lint.add(Rule::Stokes, name.clone(), expected);
                 }
             }
         }
@@ -84,7 +81,7 @@ fn count(channels: &[ListedChannel], lint: &mut Lint) {
 
 fn check_attributes(reader: &ExrReader, lint: &mut Lint) {
     let attributes = reader.attributes();
-    let text = |name: &str| attributes.get(name).map(|v| v.as_text().unwrap_or(v.kind()));
+    let text = |name: &str| attributes.get(name).map(|v| v.as_text().unwrap_or(&v.kind));
     let version = text(LAYOUT_VERSION);
     if version != Some(LAYOUT_VERSION_VALUE) {
         let found = format!("{LAYOUT_VERSION} {}", version.map_or("absent".into(), quoted));
@@ -101,11 +98,8 @@ fn check_attributes(reader: &ExrReader, lint: &mut Lint) {
     if lint.reradiation > 0 && BispectralUnit::stated(attributes).is_none() {
         let found = text(BISPECTRAL_UNIT).map_or("absent".into(), quoted);
         let names = [BispectralUnit::PerBand, BispectralUnit::PerNm].map(|u| quoted(u.name()));
-        lint.add(
-            Rule::BispectralUnit,
-            format!("{BISPECTRAL_UNIT} {found}"),
-            format!("{}, which the layout itself leaves open", names.join(" or ")),
-        );
+        let expected = format!("{}, which the layout itself leaves open", names.join(" or "));
+        lint.add(Rule::BispectralUnit, format!("{BISPECTRAL_UNIT} {found}"), expected);
     }
 }
 
@@ -116,7 +110,11 @@ fn quoted(text: &str) -> String {
 fn check_compact(reader: &ExrReader, lint: &mut Lint) {
     let layout = match CompactLayout::from_attributes(reader.attributes()) {
         Ok(layout) => layout,
-        Err(error) => return lint.add_error(Rule::Compact, error),
+        Err(error) => {
+            let message = error.to_string();
+            let (found, expected) = message.split_once(", expected ").unwrap_or((&message, ""));
+            return lint.add(Rule::Compact, found, expected);
+        }
     };
     let names = layout.channel_names();
     let absent: Vec<&String> = names.iter().filter(|n| reader.channel(n).is_err()).collect();
@@ -140,7 +138,7 @@ fn check_duplicates(channels: &[ListedChannel], lint: &mut Lint) {
         let ((kind, nm), (other_kind, other_nm)) = (a.key(), b.key());
         kind == other_kind && same(nm[0], other_nm[0]) && same(nm[1], other_nm[1])
     };
-    // What is the same up to rounding stands side by side.
+    // Wavelengths that are the same except for rounding become neighbors.
     let rounded = |listed: &ListedChannel| {
         let (kind, nm) = listed.channel.key();
         (kind, nm.map(|nm| (nm / SAME_NM).round()))
@@ -196,11 +194,8 @@ fn check_pairs(channels: &[ListedChannel], lint: &mut Lint) {
             (incident, _) => {
                 let nm = if incident.is_none() { in_nm } else { out_nm };
                 let channel = SpectralChannel::Reflectance { nm };
-                lint.add(
-                    Rule::Band,
-                    format!("{name} without {channel}"),
-                    "both its bands on the diagonal",
-                );
+                let found = format!("{name} without {channel}");
+                lint.add(Rule::Band, found, "both its bands on the diagonal");
             }
         }
     }

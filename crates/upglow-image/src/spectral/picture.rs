@@ -1,4 +1,4 @@
-//! Spectral pictures, texel by texel.
+//! Reads spectral pictures by texel.
 
 use std::path::Path;
 
@@ -7,17 +7,17 @@ use super::compact::CompactLayout;
 use super::error::FormError;
 use crate::exr::reader::ExrReader;
 
-/// An OpenEXR file in the spectral layout or in our compact form.
+/// Reads an OpenEXR file in the spectral layout or in upglow's compact form.
 #[derive(Debug)]
 pub struct SpectralPicture {
     reader: ExrReader,
-    /// Well-formed channels and their numbers, by kind and wavelength.
+    /// Spectral channels and their indices in the file, by kind and wavelength.
     channels: Vec<(SpectralChannel, usize)>,
     preview: Option<[usize; 3]>,
     compact: Option<(CompactLayout, Vec<usize>)>,
 }
 
-/// All that a spectral picture holds of one texel, sorted by wavelength.
+/// The values of one texel, sorted by wavelength.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct SpectralTexel {
@@ -29,17 +29,17 @@ pub struct SpectralTexel {
     #[cfg_attr(feature = "serde", serde(skip))]
     pub polarization: Vec<(u8, f64, f32)>,
     /// Incident and outgoing wavelength in nm, and the share of the incident light that leaves at the
-    /// outgoing one. Of a compact file: expanded, the pairs of the spectral layout.
+    /// outgoing one. Computed from the maps for a compact file.
     pub reradiation: Vec<(f64, f64, f32)>,
-    /// What the file says re-radiation is a share of, if it does.
+    /// The unit of re-radiation, if the file states it.
     pub reradiation_unit: Option<BispectralUnit>,
     /// Red, green, blue of the preview.
     pub preview: Option<[f32; 3]>,
 }
 
 impl SpectralPicture {
-    /// Opens a spectral picture. Channels whose names are broken are left out; [`Lint`](crate::Lint)
-    /// names them.
+    /// Opens a spectral picture. Channels with invalid names are omitted; [`Lint`](crate::Lint) reports
+    /// them.
     ///
     /// # Errors
     ///
@@ -53,10 +53,8 @@ impl SpectralPicture {
             return Err(FormError::NotSpectral);
         }
         channels.sort_by(|(a, _), (b, _)| key_order(a.key(), b.key()));
-        let preview = match ["R", "G", "B"].map(|name| reader.channel(name).ok()) {
-            [Some(red), Some(green), Some(blue)] => Some([red, green, blue]),
-            _ => None,
-        };
+        let [red, green, blue] = ["R", "G", "B"].map(|name| reader.channel(name).ok());
+        let preview = red.zip(green).zip(blue).map(|((red, green), blue)| [red, green, blue]);
         let compact = compact(&reader)?;
         Ok(Self { reader, channels, preview, compact })
     }
@@ -72,7 +70,7 @@ impl SpectralPicture {
         self.channels.iter().map(|(channel, _)| *channel)
     }
 
-    /// What re-radiation holds; `None` where the file does not say.
+    /// The unit of re-radiation; `None` if the file does not state it.
     pub(super) fn bispectral_unit(&self) -> Option<BispectralUnit> {
         if self.compact.is_some() {
             return Some(BispectralUnit::PerBand);
@@ -119,14 +117,13 @@ impl SpectralPicture {
     }
 }
 
-/// The compact form that a file states, and the numbers of its channels.
+/// The compact layout that a file states, and the indices of its channels.
 fn compact(reader: &ExrReader) -> Result<Option<(CompactLayout, Vec<usize>)>, FormError> {
     if !CompactLayout::is_stated(reader.attributes()) {
         return Ok(None);
     }
     let layout = CompactLayout::from_attributes(reader.attributes())?;
-    let names = layout.channel_names().into_iter();
-    let numbers = names.map(|name| reader.channel(&name).map_err(|_| FormError::Channel { name }));
-    let numbers = numbers.collect::<Result<_, _>>()?;
+    let names = layout.channel_names();
+    let numbers = names.iter().map(|name| reader.channel(name)).collect::<Result<_, _>>()?;
     Ok(Some((layout, numbers)))
 }

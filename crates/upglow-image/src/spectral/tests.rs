@@ -118,7 +118,7 @@ fn a_compact_file_reads_as_the_full_one() {
     assert_eq!(outside, "columns [3, 4] of rows [0, 1], expected some inside 3 by 2");
 }
 
-/// What a linter finds in a file of these channels, all samples `value`.
+/// The findings in a file of these channels, with `value` in all samples.
 fn findings(names: &[&str], attributes: Attributes, value: f32) -> Vec<(Rule, Severity, String)> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("x.exr");
@@ -134,7 +134,7 @@ fn rules(names: &[&str], value: f32) -> Vec<Rule> {
 }
 
 #[test]
-fn the_linter_finds_each_fault_and_no_other() {
+fn each_broken_rule_is_found_and_no_other() {
     let pair = ["T.400nm", "T.410nm", "T.400nm.410nm"];
     assert_eq!(rules(&pair, 0.25), []);
     assert_eq!(rules(&["T.400nm", "T.410.5nm"], 0.25), [Rule::Name]);
@@ -181,7 +181,7 @@ fn attributes_are_linted_too() {
     assert_eq!(found.len(), 1);
 }
 
-/// The interpreter with the packages that check our files, if there is one.
+/// A Python interpreter with the packages that read our files, if there is one.
 fn python() -> Option<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let candidates = [
@@ -226,7 +226,7 @@ fn other_programs_read_our_files() {
     agrees(&python, "", &[&full, &compact, &list]);
 }
 
-/// Runs the reader of others' programs, which must agree with ours.
+/// Reads files with other programs, which must agree with ours.
 fn agrees(python: &Path, mode: &str, files: &[&Path]) {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/readers/check_exr.py");
     let mode = (!mode.is_empty()).then_some(mode);

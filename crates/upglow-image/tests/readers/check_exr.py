@@ -4,9 +4,9 @@ usage: check_exr.py FULL.exr COMPACT.exr EXPECTED.txt
        check_exr.py --samples FILE.exr EXPECTED.txt
        check_exr.py --colors SPECTRAL.exr WEIGHTS.txt COLORS.txt
 
-EXPECTED.txt holds one sample a line: column, row, channel, value. The full file must hold them as
+EXPECTED.txt holds one sample per line: column, row, channel, value. The full file must hold them as
 channels; the compact one is expanded here, by the description in docs/spectral-exr.md alone.
-WEIGHTS.txt holds a wavelength and the power of the light a line, COLORS.txt column, row, X, Y, Z.
+WEIGHTS.txt holds a wavelength and the power of the light per line, COLORS.txt column, row, X, Y, Z.
 """
 
 import sys
@@ -102,12 +102,12 @@ def colors(path, light_path, colors_path):
     light = np.array(expected(light_path), dtype=np.float64)
     assert np.array_equal(light[:, 0], waves)
     shape = colour.SpectralShape(waves[0], waves[-1], waves[1] - waves[0])
-    eye = colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"].copy().align(shape)
+    observer = colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"].copy().align(shape)
     lamp = colour.SpectralDistribution(light[:, 1], waves)
     for x, y, *xyz in expected(colors_path):
         values = [channels[bands[wave]][int(y), int(x)] for wave in waves]
         found = colour.sd_to_XYZ(
-            colour.SpectralDistribution(values, waves), eye, lamp, method="Integration"
+            colour.SpectralDistribution(values, waves), observer, lamp, method="Integration"
         )
         ours = np.array(xyz, dtype=np.float64)
         assert np.all(abs(found / 100 - ours) <= COLOR_RELATIVE * ours), (x, y, found, ours)

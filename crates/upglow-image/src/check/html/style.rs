@@ -1,4 +1,4 @@
-//! How the page looks, on a screen by day and by night, and on paper.
+//! The style sheet of the page, for screens in light and dark mode and for paper.
 
 pub(super) const STYLE: &str = r"
 :root {

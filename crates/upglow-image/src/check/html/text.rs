@@ -1,6 +1,6 @@
-//! Words and numbers of the page.
+//! Formatting of texts and numbers.
 
-/// `text` where markup would be read as such; characters that XML forbids become a replacement.
+/// Escapes markup; characters that XML forbids become replacement characters.
 pub(super) fn escaped(text: &str) -> String {
     text.chars().fold(String::new(), |mut out, c| {
         match c {
@@ -17,7 +17,7 @@ pub(super) fn escaped(text: &str) -> String {
     })
 }
 
-/// A count with its thousands apart.
+/// A count with separated thousands.
 pub(super) fn grouped(count: u64) -> String {
     let digits = count.to_string();
     let mut out = String::new();
@@ -30,21 +30,8 @@ pub(super) fn grouped(count: u64) -> String {
     out
 }
 
-pub(super) fn plural(count: u64, one: &str, many: &str) -> String {
-    format!("{} {}", grouped(count), if count == 1 { one } else { many })
-}
-
-/// A share that says "0 %" only of none and "100 %" only of all.
-pub(super) fn percent(part: u64, whole: u64) -> String {
-    match part {
-        0 => "0 %".into(),
-        _ if part == whole => "100 %".into(),
-        _ => percent_of(part as f64 / whole as f64),
-    }
-}
-
-/// A share between none and all.
-pub(super) fn percent_of(share: f64) -> String {
+/// A share, 0..=1, as a percentage that is "0 %" only for none and "100 %" only for all.
+pub(super) fn percent(share: f64) -> String {
     match share * 100.0 {
         p if p <= 0.0 => "0 %".into(),
         p if p >= 100.0 => "100 %".into(),
@@ -72,6 +59,7 @@ mod tests {
 
     #[test]
     fn only_none_is_zero_percent_and_only_all_is_a_hundred() {
+        let percent = |part: u32, whole: u32| percent(f64::from(part) / f64::from(whole));
         assert_eq!((percent(0, 9), percent(9, 9)), ("0 %".into(), "100 %".into()));
         assert_eq!(percent(1, 1_000_000), "less than 0.01 %");
         assert_eq!(percent(999_999, 1_000_000), "more than 99.99 %");
@@ -79,13 +67,13 @@ mod tests {
     }
 
     #[test]
-    fn thousands_stand_apart() {
+    fn thousands_are_separated() {
         assert_eq!(grouped(16_777_216), "16\u{202F}777\u{202F}216");
         assert_eq!((grouped(0), grouped(999)), ("0".into(), "999".into()));
     }
 
     #[test]
-    fn odd_values_have_names() {
+    fn special_values_have_names() {
         assert_eq!([f32::NAN, f32::INFINITY, f32::NEG_INFINITY].map(value), ["NaN", "∞", "−∞"]);
         assert_eq!([0.5, -0.0001, 65504.0].map(value), ["0.500", "−1.0e−4", "6.6e4"]);
     }

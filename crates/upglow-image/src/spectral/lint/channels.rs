@@ -1,39 +1,39 @@
-//! The spectral channels of a file, as a linter lists them.
+//! The spectral channels of a file.
 
 use super::findings::{Lint, Rule};
 use crate::exr::header::Sample;
 use crate::exr::reader::ExrReader;
 use crate::spectral::channel::{SpectralChannel, SpectralNameError};
 
-/// A well-formed spectral channel of a file.
+/// A spectral channel with a valid name.
 #[derive(Clone, Debug)]
 pub(super) struct ListedChannel {
     pub(super) channel: SpectralChannel,
     pub(super) name: String,
-    /// Its number in the file.
+    /// Its index in the file.
     pub(super) number: usize,
     pub(super) sample: Sample,
 }
 
-/// Wavelengths nearer than this are the same, nm: names of six decimals differ by a rounding.
+/// Wavelengths that differ by less are the same, nm: names with six decimals are rounded.
 pub(super) const SAME_NM: f64 = 1e-5;
 
 pub(super) fn same(a: f64, b: f64) -> bool {
     (a - b).abs() < SAME_NM
 }
 
+/// Lists the spectral channels; reports invalid names and samples.
 pub(super) fn list(reader: &ExrReader, lint: &mut Lint) -> Vec<ListedChannel> {
     let mut channels = Vec::new();
     for (number, stored) in reader.channels().iter().enumerate() {
         let name = stored.name.clone();
-        match name.parse::<SpectralChannel>() {
+        match name.parse() {
             Ok(channel) => {
                 channels.push(ListedChannel { channel, name, number, sample: stored.sample });
             }
             Err(SpectralNameError::NotSpectral) => continue,
-            Err(error) => {
-                let has = format_args!("channel {:?} has {error}", stored.name);
-                lint.add_error(Rule::Name, has);
+            Err(SpectralNameError::Invalid { found, expected }) => {
+                lint.add(Rule::Name, format!("channel {name:?} has {found}"), expected);
             }
         }
         if stored.sample == Sample::Uint {
@@ -49,7 +49,7 @@ pub(super) fn list(reader: &ExrReader, lint: &mut Lint) -> Vec<ListedChannel> {
     channels
 }
 
-/// The wavelengths that `nm` picks, ascending, nm.
+/// The wavelengths that `nm` selects, ascending, nm.
 pub(super) fn sorted_nm(
     channels: &[ListedChannel],
     nm: impl Fn(SpectralChannel) -> Option<f64>,
@@ -69,7 +69,7 @@ pub(super) fn bands_nm(channels: &[ListedChannel]) -> Vec<f64> {
     bands
 }
 
-/// The number of the band around a wavelength that names it.
+/// The index of the band with this wavelength.
 pub(super) fn band(bands_nm: &[f64], nm: f64) -> Option<usize> {
     let at = bands_nm.partition_point(|band| *band < nm - SAME_NM);
     bands_nm.get(at).filter(|band| same(**band, nm)).map(|_| at)

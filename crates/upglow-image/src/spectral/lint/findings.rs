@@ -1,23 +1,26 @@
-//! What a linter finds: rules that are broken, and how bad that is.
+//! The findings of the linter: broken rules, and their severity.
 
 use std::fmt;
 
-/// How bad a finding is.
+use upglow_color::choices;
+
+/// The severity of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "lowercase"))]
 pub enum Severity {
-    /// Readers may guess, or some will refuse the file.
+    /// Readers may interpret the file differently, or some may refuse it.
     Warning,
-    /// The file breaks the layout, or its numbers are not physical.
+    /// The file breaks the layout, or its values are unphysical.
     Error,
 }
 
-/// What is checked.
+choices!(Severity, "severity", Warning = "warning", Error = "error");
+
+/// The rules that are checked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Rule {
-    /// There are spectral channels.
+    /// The file has spectral channels.
     Spectral,
-    /// Names of spectral channels have numbers with a comma, and units.
+    /// Names of spectral channels have numbers with a comma and a unit.
     Name,
     /// The diagonal is `T.λ`, never `T.λ.λ`.
     Diagonal,
@@ -29,32 +32,32 @@ pub(crate) enum Rule {
     Preview,
     /// `spectralLayoutVersion` is "1.0".
     LayoutVersion,
-    /// `emissiveUnits` is there where `S0.` is.
+    /// Files with `S0.` channels state `emissiveUnits`.
     EmissiveUnits,
     /// `S1.` to `S3.` have the wavelengths of `S0.`.
     Polarization,
     /// Wavelengths of re-radiation are among those of `T.λ`.
     Band,
-    /// Each pair of bands, incident before outgoing, has its channel.
+    /// Each pair of bands, the outgoing one longer, has a channel.
     Pairs,
-    /// No wavelength is there twice, spelled differently.
+    /// No two channels have the same wavelength in different spellings.
     Duplicate,
     /// All names use one unit.
     Units,
-    /// The file says what re-radiation channels hold.
+    /// The file states the unit of re-radiation.
     BispectralUnit,
-    /// A file that says it is in compact form is.
+    /// A file that states the compact form has its attributes and channels.
     Compact,
     /// Every sample is finite.
     Finite,
     /// Reflectance, re-radiation and `S0.` are not negative.
     Negative,
-    /// No incident wavelength gives back more than it brought.
+    /// No more light leaves than arrives, at each incident wavelength.
     Energy,
 }
 
 impl Rule {
-    /// How bad it is to break the rule.
+    /// The severity of breaking the rule.
     fn severity(self) -> Severity {
         match self {
             Self::Preview
@@ -67,28 +70,19 @@ impl Rule {
     }
 }
 
-/// One thing that is wrong with a file.
+/// A broken rule.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Finding {
-    /// The rule that is broken.
+    /// The rule.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(crate) rule: Rule,
-    /// How bad that is.
+    /// The severity of breaking it.
     pub severity: Severity,
-    /// What was found.
+    /// The content of the file that breaks the rule.
     pub found: String,
-    /// What was expected.
+    /// The content that would be valid.
     pub expected: String,
-}
-
-impl fmt::Display for Severity {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Warning => "warning",
-            Self::Error => "error",
-        })
-    }
 }
 
 impl fmt::Display for Finding {
@@ -97,7 +91,7 @@ impl fmt::Display for Finding {
     }
 }
 
-/// What a linter saw in a file.
+/// Checks whether a file is a well-formed spectral or bispectral OpenEXR file.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Lint {
@@ -113,15 +107,15 @@ pub struct Lint {
     /// Number of `T.λ.λ'` channels.
     #[cfg_attr(feature = "serde", serde(rename = "reradiation_channels"))]
     pub reradiation: usize,
-    /// Whether the file says that it is in our compact form.
+    /// Whether the file states upglow's compact form.
     #[cfg_attr(feature = "serde", serde(rename = "compact"))]
     pub is_compact: bool,
-    /// What is wrong; empty for a well-formed file.
+    /// The broken rules.
     pub findings: Vec<Finding>,
 }
 
 impl Lint {
-    /// Whether nothing worse than a warning was found.
+    /// Whether there are no findings, or only warnings.
     #[must_use]
     pub fn is_well_formed(&self) -> bool {
         self.findings.iter().all(|finding| finding.severity < Severity::Error)
@@ -136,16 +130,9 @@ impl Lint {
         let [found, expected] = [found.into(), expected.into()].map(escaped);
         self.findings.push(Finding { rule, severity: rule.severity(), found, expected });
     }
-
-    /// The same for what an error says.
-    pub(super) fn add_error(&mut self, rule: Rule, error: impl fmt::Display) {
-        let message = error.to_string();
-        let (found, expected) = message.split_once(", expected ").unwrap_or((&message, ""));
-        self.add(rule, found, expected);
-    }
 }
 
-/// One line: control characters in names stand for themselves no more.
+/// Escapes control characters, so that the text is a single line.
 fn escaped(text: String) -> String {
     if text.contains(char::is_control) { text.escape_debug().to_string() } else { text }
 }

@@ -1,4 +1,4 @@
-//! What a linter finds in the samples of a spectral file.
+//! Checks the samples of a spectral file.
 
 use super::channels::{ListedChannel, band, bands_nm};
 use super::findings::{Lint, Rule};
@@ -7,16 +7,16 @@ use crate::exr::header::Sample;
 use crate::exr::reader::ExrReader;
 use crate::spectral::channel::{BispectralUnit, SpectralChannel};
 
-/// Rounding to half precision: 2⁻¹² of each sample; twice that where samples are added up.
+/// Tolerance for sums of half-precision samples, which are rounded by 2⁻¹² each.
 const HALF_SLACK: f64 = 5e-4;
-/// Rounding to single precision, in sums of hundreds of samples.
+/// Tolerance for sums of hundreds of single-precision samples.
 const FLOAT_SLACK: f64 = 1e-5;
 
-/// How often something is wrong, and where first.
+/// The invalid values of one kind.
 #[derive(Clone, Debug, Default)]
 struct Occurrences {
     count: u64,
-    /// Column, row, channel, value.
+    /// Column, row, channel and value of the first.
     first: Option<(usize, usize, String, f64)>,
     /// The largest value.
     most: f64,
@@ -52,7 +52,7 @@ pub(super) fn check_samples(
         check_signs(reader.size()[0], top, channels, &planes, [&mut broken, &mut negative]);
         sums.check(reader.size()[0], top, &planes, &mut bright);
     }
-    if let Some(found) = broken.report("samples that are no finite numbers") {
+    if let Some(found) = broken.report("samples that are not finite numbers") {
         lint.add(Rule::Finite, found, "finite numbers");
     }
     if let Some(found) = negative.report("negative samples") {
@@ -85,10 +85,13 @@ fn check_signs(
     }
 }
 
-/// For each incident band the planes whose sum is the outgoing light, and the weight of each.
+/// Sums of the outgoing light of each incident band.
 struct EnergySums {
+    /// The `T.` channel of each band.
     name: Vec<String>,
+    /// For each band the planes that are added, and their weights.
     terms: Vec<Vec<(usize, f64)>>,
+    /// Greatest valid sum.
     most: f64,
 }
 
@@ -98,19 +101,18 @@ impl EnergySums {
         let unit = BispectralUnit::stated(reader.attributes());
         let mut terms = vec![Vec::new(); bands.len()];
         for (plane, found) in channels.iter().enumerate() {
-            let (incident, weight) = match (found.channel, unit) {
-                (SpectralChannel::Reflectance { nm }, _) => (band(&bands, nm), 1.0),
+            let (in_nm, weight) = match (found.channel, unit) {
+                (SpectralChannel::Reflectance { nm }, _) => (nm, 1.0),
                 (SpectralChannel::Reradiation { in_nm, .. }, Some(BispectralUnit::PerBand)) => {
-                    (band(&bands, in_nm), 1.0)
+                    (in_nm, 1.0)
                 }
                 (SpectralChannel::Reradiation { in_nm, out_nm }, Some(BispectralUnit::PerNm)) => {
-                    let width = band(&bands, out_nm).map_or(0.0, |o| band_width_nm(&bands, o));
-                    (band(&bands, in_nm), width)
+                    (in_nm, band(&bands, out_nm).map_or(0.0, |o| band_width_nm(&bands, o)))
                 }
-                // Without a unit the re-radiation cannot be added up: the diagonal alone is checked.
-                _ => (None, 0.0),
+                // Re-radiation of an unknown unit cannot be added: only the diagonal is checked.
+                _ => continue,
             };
-            if let Some(incident) = incident {
+            if let Some(incident) = band(&bands, in_nm) {
                 terms[incident].push((plane, weight));
             }
         }
@@ -134,13 +136,10 @@ impl EnergySums {
     }
 }
 
-/// From halfway to the band before to halfway to the band after; at the ends, the inner half twice.
+/// The mean distance to the neighboring bands; 0 for a single band.
 fn band_width_nm(bands: &[f64], index: usize) -> f64 {
     let after = bands.get(index + 1).map(|next| next - bands[index]);
     let before = index.checked_sub(1).map(|i| bands[index] - bands[i]);
-    match (before, after) {
-        (Some(before), Some(after)) => (before + after) / 2.0,
-        (Some(only), None) | (None, Some(only)) => only,
-        (None, None) => 0.0,
-    }
+    let (before, after) = (before.or(after), after.or(before));
+    before.zip(after).map_or(0.0, |(before, after)| (before + after) / 2.0)
 }
