@@ -1,6 +1,6 @@
 #!/bin/sh
-# Draws the pictures of this folder's README: each example, its heat map, and what was baked of it
-# under D65 and under A, side by side and half as large.
+# Makes the pictures of this folder's README: each example, its heat map, and its baked materials
+# under D65 and under A, side by side and at half size.
 #
 # Usage, in this folder: sh pictures.sh
 # Needs `upglow`, and `oiiotool` (pip install OpenImageIO).
@@ -8,8 +8,8 @@ set -eu
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 upglow -q build -o "$work/acescg.safetensors" > "$work/log"
-# `upglow.white` of the files says what the perfect diffuser has under each light; the eye is adapted
-# to it.
+# The attribute `upglow.white` of the files: the RGB of the perfect diffuser under each light, to which
+# the colors are adapted.
 white_D65=1,1,1
 white_A=0.97941,0.61236,0.22816
 for name in pool chart dusk; do
