@@ -19,7 +19,7 @@ impl ExamplePicture {
     pub const ALL: [Self; 3] = [
         Self {
             name: "pool",
-            about: "tiles of a swimming pool, with a ring of ACEScg (0.9, 0, 0.9), which no reflectance matches",
+            about: "tiles of a swimming pool, with a ring of ACEScg (0.9, 0, 0.9) that no reflectance shows",
             size: [512, 512],
             color: pool,
         },

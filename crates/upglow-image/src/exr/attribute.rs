@@ -39,7 +39,7 @@ impl Attribute {
         (self.kind == kind).then_some(&self.bytes[..])
     }
 
-    /// The text of a `string` in UTF-8; OpenEXR specifies no encoding.
+    /// The text of a `string`. OpenEXR specifies no encoding; readers replace what is not UTF-8.
     pub(crate) fn as_text(&self) -> Option<&str> {
         str::from_utf8(self.of_kind("string")?).ok()
     }

@@ -201,7 +201,11 @@ fn read_header<R: Read>(bytes: &mut Bytes<R>, version: u32) -> Result<Option<Hea
         if bytes.position > MAX_HEADER {
             return Err(ExrError::header("header", "over 256 MiB", "at most 256 MiB"));
         }
-        let value = Attribute::new(&kind, bytes.vec(length as usize, &name)?);
+        let mut value = bytes.vec(length as usize, &name)?;
+        if kind == "string" {
+            value = String::from_utf8_lossy(&value).into_owned().into_bytes();
+        }
+        let value = Attribute::new(&kind, value);
         if !value.has_valid_length() {
             return Err(ExrError::header(&name, format!("a {kind} of {length} bytes"), kind));
         }
