@@ -228,7 +228,7 @@ fn pictures_that_are_refused() {
     folder.write("head.exr", &whole[..60]);
     folder.write("text.exr", "no picture");
     folder.write("empty.png", "");
-    let space = "unsaid.exr: the file does not name its RGB space; give";
+    let space = "unsaid.exr: the file does not name its RGB space, expected one to be given; give";
     let cases = [
         ("bake cube unsaid.exr -o out.exr", space),
         ("check unsaid.exr", space),

@@ -494,7 +494,10 @@ fn an_srgb_png_gets_its_own_colors_from_an_acescg_cube() {
     bake(cube(), radiance("D65"), told, &input, &output).unwrap();
     assert_eq!(std::fs::read(&output).unwrap(), said);
     let refused = bake(cube(), POLISHED, options(Sample::Half), &input, &output).unwrap_err();
-    assert_eq!(refused.to_string(), "the file does not name its RGB space");
+    assert_eq!(
+        refused.to_string(),
+        "the file does not name its RGB space, expected one to be given"
+    );
     assert_eq!(std::fs::read(&output).unwrap(), said);
 }
 

@@ -52,9 +52,9 @@ pub enum PictureError {
         expected: u64,
     },
     /// Neither the file nor the caller names an RGB space.
-    #[error("the file does not name its RGB space")]
+    #[error("the file does not name its RGB space, expected one to be given")]
     Space,
     /// Neither the file nor the caller names an encoding.
-    #[error("the file does not name its encoding: linear, srgb or a gamma")]
+    #[error("the file does not name its encoding, expected linear, srgb or a gamma to be given")]
     Encoding,
 }
