@@ -61,7 +61,8 @@ def test_between_exact_nodes_only_blend_has_no_error(cube) -> None:
     assert features.de2000[exact].max() > 1.0
 
 
-def test_dyes_are_those_of_the_model_and_glow_inside_the_locus(cube) -> None:
+def test_dyes_are_those_of_the_model_and_glow_inside_the_locus() -> None:
+    cube = upglow.build(model=figures.KONIG_2020, resolution=2)
     dyes = figures.dyes()
     assert dyes.names == cube.dye_names == figures.dyes(cube).names
     assert np.array_equal(np.stack([dyes.absorption, dyes.emission], axis=1), cube.dye_curves)

@@ -100,14 +100,15 @@ fn has_exact_nodes(cube: &Cube, rgb: LinearRgb) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use upglow::{DyeModel, DyeOptions, DyeSet, Model};
-    use upglow_color::Contract;
-    use upglow_fit::{FitOptions, Unwatched, build_cube};
+    use upglow::{Mixing, Model};
+    use upglow_fit::{Unwatched, build_cube};
+
+    use crate::konig2020;
 
     fn cube() -> Cube {
-        let dyes = DyeModel::new(DyeSet::named("konig8").unwrap(), DyeOptions::default()).unwrap();
-        let (contract, model) = (Contract::default(), Model::Dyes(dyes));
-        build_cube(&contract, &model, FitOptions::default(), 4, &Unwatched).unwrap()
+        let model = Model::Dyes(konig2020::dyes(Mixing::Pooled));
+        let options = konig2020::options(Metric::De2000, 1);
+        build_cube(&konig2020::contract(), &model, options, 4, &Unwatched).unwrap()
     }
 
     /// The cube stores single precision.

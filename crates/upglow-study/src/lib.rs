@@ -2,7 +2,9 @@
 //!
 //! The data of a figure is a plain value: [`Layer`], [`standing_layer`], [`dye_spectra`] … The program
 //! `upglow-study`, in the same package, draws the figures from these values and measures the paper's
-//! claims.
+//! claims; [`konig2020`] has the paper's settings for both.
+
+pub mod konig2020;
 
 mod chromaticity;
 mod dye_spectra;

@@ -43,6 +43,7 @@ from ._standing import standing
 from ._wavelengths import FINE_NM
 
 __all__ = [
+    "KONIG_2020",
     "ChromaticityDiagram",
     "ColorSolid",
     "DyeSpectra",
@@ -174,6 +175,12 @@ def layer(
     )
 
 
+KONIG_2020 = Dyes(
+    set="konig8", accounting="energy", mixing="pooled", quantum_yield=1.0, optical_density=None
+)
+"""The dyes of König et al. 2020: thin solutions that give back all absorbed energy."""
+
+
 class DyeSpectra(NamedTuple):
     """Dyes in ring order."""
 
@@ -199,7 +206,7 @@ def dyes(source: Dyes | Cube | None = None, *, observer: Any = None) -> DyeSpect
     Parameters
     ----------
     source
-        `Dyes`, by default ``konig8``, or a `Cube` with dyes.
+        `Dyes`, by default those of König et al. 2020, or a `Cube` with dyes.
     observer
         An `Observer`, or what one is made from; by default the cube's, or CIE 1931 2°.
 
@@ -211,7 +218,7 @@ def dyes(source: Dyes | Cube | None = None, *, observer: Any = None) -> DyeSpect
     if isinstance(source, Cube):
         native, own = source._native.model(), source.contract.observer
     else:
-        native, own = (source or Dyes())._native(), Observer("cie-1931-2deg")
+        native, own = (source or KONIG_2020)._native(), Observer("cie-1931-2deg")
     seen_by = own if observer is None else Observer(observer)
     names, absorption, emission, peaks, xy = _upglow.dye_spectra(native, seen_by._native)
     return DyeSpectra(names, FINE_NM, absorption, emission, peaks[:, 0], peaks[:, 1], xy)

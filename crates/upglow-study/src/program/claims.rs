@@ -14,8 +14,9 @@ use std::fmt;
 use serde::Serialize;
 use upglow_color::{Metric, choices};
 use upglow_fit::{BuildError, Watch};
+use upglow_study::konig2020;
 
-use crate::cubes::{Cubes, PAPER_SWEEPS, StudyCube};
+use crate::cubes::{Cubes, StudyCube};
 use crate::field::Field;
 
 /// A sentence of the paper and what we measured.
@@ -130,9 +131,9 @@ impl Fields {
         let field = |which| cubes.get(which, watch).map(Field::of);
         let paper = |metric, sweeps| StudyCube::Paper { metric, sweeps };
         Ok(Self {
-            rgb: field(paper(Metric::Rgb, PAPER_SWEEPS))?,
-            de76: field(paper(Metric::De76, PAPER_SWEEPS))?,
-            de76_8: field(paper(Metric::De76, 2 * PAPER_SWEEPS))?,
+            rgb: field(paper(Metric::Rgb, konig2020::SWEEPS))?,
+            de76: field(paper(Metric::De76, konig2020::SWEEPS))?,
+            de76_8: field(paper(Metric::De76, 2 * konig2020::SWEEPS))?,
             de2000: field(StudyCube::PAPER)?,
             features: field(StudyCube::PaperFeatures)?,
             analytic: field(StudyCube::PaperAnalytic)?,

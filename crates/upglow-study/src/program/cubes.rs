@@ -3,14 +3,15 @@
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use upglow::{AnalyticModel, Cube, DyeModel, DyeOptions, DyeSet, Mixing, Model};
-use upglow_color::{Contract, Metric};
+use upglow::{Cube, Mixing, Model};
+use upglow_color::Metric;
 use upglow_fit::{BuildError, FitOptions, Method, Watch, build_cube};
+use upglow_study::konig2020;
 
-/// Which cube. All have the default contract, ACEScg under D65, and slopes of at most 0.01/nm.
+/// Which cube. All have the paper's contract and its limit of slopes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum StudyCube {
-    /// Our own search with eight dyes.
+    /// Our own search with the paper's dyes.
     Search {
         /// The color difference that is minimized.
         metric: Metric,
@@ -28,41 +29,37 @@ pub(crate) enum StudyCube {
     PaperAnalytic,
 }
 
-/// Sweeps of the paper's figures that state no other number.
-pub(crate) const PAPER_SWEEPS: u32 = 4;
+/// Sweeps of our own search. More of them find little: it meets most nodes that it can before the first.
+const SEARCH_SWEEPS: u32 = 2;
 
 impl StudyCube {
-    /// Our cube, with every default.
+    /// Our own search for the materials that the paper's method searches for.
     pub(crate) const REFERENCE: Self = Self::Search { metric: Metric::De2000 };
 
     /// The paper's method with dyes, CIEDE2000 and four sweeps, as in its figures 1, 3 and 7.
-    pub(crate) const PAPER: Self = Self::Paper { metric: Metric::De2000, sweeps: PAPER_SWEEPS };
+    pub(crate) const PAPER: Self =
+        Self::Paper { metric: Metric::De2000, sweeps: konig2020::SWEEPS };
 
     fn model(self) -> Model {
         match self {
-            Self::PaperAnalytic => Model::Analytic(AnalyticModel::default()),
+            Self::PaperAnalytic => Model::Analytic(konig2020::analytic()),
             Self::Search { .. } | Self::Paper { .. } | Self::PaperFeatures => {
-                Model::Dyes(paper_dyes(Mixing::default()))
+                Model::Dyes(konig2020::dyes(Mixing::Pooled))
             }
         }
     }
 
     fn options(self) -> FitOptions {
-        let (metric, sweeps, method) = match self {
-            Self::Search { metric } => return FitOptions { metric, ..FitOptions::default() },
-            Self::Paper { metric, sweeps } => (metric, sweeps, Method::Konig2020),
-            Self::PaperFeatures => (Metric::De2000, PAPER_SWEEPS, Method::Konig2020Features),
-            Self::PaperAnalytic => (Metric::De2000, PAPER_SWEEPS, Method::Konig2020),
-        };
-        FitOptions { metric, sweeps, method, ..FitOptions::default() }
+        let usual = konig2020::options(Metric::De2000, konig2020::SWEEPS);
+        match self {
+            Self::Search { metric } => {
+                FitOptions { metric, sweeps: SEARCH_SWEEPS, method: Method::Search, ..usual }
+            }
+            Self::Paper { metric, sweeps } => konig2020::options(metric, sweeps),
+            Self::PaperFeatures => FitOptions { method: Method::Konig2020Features, ..usual },
+            Self::PaperAnalytic => usual,
+        }
     }
-}
-
-/// The eight dyes of the paper.
-pub(crate) fn paper_dyes(mixing: Mixing) -> DyeModel {
-    let set = DyeSet::named("konig8").expect("the set is built in");
-    let options = DyeOptions { mixing, ..DyeOptions::default() };
-    DyeModel::new(set, options).expect("default options fit every set")
 }
 
 /// Cubes of one resolution, each built when it is first needed.
@@ -97,7 +94,7 @@ impl Cubes {
         }
         // Without holding the lock: a thread that waits for its rayon pool may run another task
         // that needs a cube.
-        let contract = Contract::default();
+        let contract = konig2020::contract();
         let cube = build_cube(&contract, &which.model(), which.options(), self.resolution, watch)?;
         Ok(Arc::clone(self.built().entry(which).or_insert_with(|| Arc::new(cube))))
     }

@@ -12,8 +12,9 @@ mod optimizer;
 mod reachability;
 mod sheet;
 
-use upglow_color::{Contract, Grid};
+use upglow_color::Grid;
 use upglow_fit::{BuildError, Watch};
+use upglow_study::konig2020;
 
 pub(crate) use display::Display;
 use display::Painter;
@@ -54,9 +55,9 @@ impl Studio<'_> {
         if self.watch.stopped() { Err(BuildError::Stopped) } else { Ok(()) }
     }
 
-    /// Converts colors of the cubes, which all have the default contract.
+    /// Converts colors of the cubes, which all have the paper's contract.
     fn painter(&self) -> Painter {
-        self.display.painter(&Contract::default().on(Grid::FIT))
+        self.display.painter(&konig2020::contract().on(Grid::FIT))
     }
 }
 

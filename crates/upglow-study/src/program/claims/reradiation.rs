@@ -1,9 +1,8 @@
 //! Re-radiation at wavelengths shorter than those of the absorbed light.
 
 use upglow::{Fluorescence, Material, Mixing, Mixture, Model, Sigmoid};
-use upglow_color::{Colorimetry, Contract, Grid};
-
-use crate::cubes::paper_dyes;
+use upglow_color::{Colorimetry, Grid};
+use upglow_study::konig2020;
 
 /// A pair of neighboring dyes, at the weight where pooled mixing moves most energy backward.
 #[derive(Clone, Debug)]
@@ -20,12 +19,12 @@ pub(super) struct Backward {
 /// Weights tried between two dyes: 0, 0.05 … 1. The share is smooth in the weight.
 const WEIGHTS: u32 = 20;
 
-/// All pairs, under the light of the default contract.
+/// All pairs, under the light of the paper.
 pub(super) fn backward_shares() -> Vec<Backward> {
-    let colorimetry = Contract::default().on(Grid::FIT);
-    let dyes = paper_dyes(Mixing::Pooled);
+    let colorimetry = konig2020::contract().on(Grid::FIT);
+    let dyes = konig2020::dyes(Mixing::Pooled);
     let names = dyes.set().dyes().iter().map(|dye| dye.name.clone()).collect::<Vec<_>>();
-    let [pooled, separate] = [dyes, paper_dyes(Mixing::Separate)].map(Model::Dyes);
+    let [pooled, separate] = [dyes, konig2020::dyes(Mixing::Separate)].map(Model::Dyes);
     let worst = |(first, name)| {
         let share = |model: &Model, step: u32| {
             let weight = f64::from(step) / f64::from(WEIGHTS);

@@ -1,6 +1,7 @@
 //! Conversion from colors of a cube to colors of the page.
 
 use upglow_color::{Colorimetry, Contract, LinearRgb, Matrix3, RgbSpace, choices, srgb_encoded};
+use upglow_study::konig2020;
 use upglow_svg::byte;
 
 /// How RGB colors of a cube are shown.
@@ -31,7 +32,7 @@ impl Display {
             Self::AsSrgb => Matrix3::IDENTITY,
             Self::Correct => {
                 let space = RgbSpace::named("srgb").expect("it is in the table");
-                let page = Contract { space, ..Contract::default() }.on(colorimetry.grid());
+                let page = Contract { space, ..konig2020::contract() }.on(colorimetry.grid());
                 page.rgb_from_xyz_matrix() * colorimetry.xyz_from_rgb_matrix()
             }
         };
@@ -59,7 +60,7 @@ mod tests {
 
     #[test]
     fn white_and_black_stay_white_and_black() {
-        let colorimetry = Contract::default().on(Grid::FIT);
+        let colorimetry = konig2020::contract().on(Grid::FIT);
         for display in [Display::AsSrgb, Display::Correct] {
             let painter = display.painter(&colorimetry);
             assert_eq!(painter.paint(LinearRgb([1.0; 3])), [255; 3], "{display}");
@@ -69,7 +70,7 @@ mod tests {
 
     #[test]
     fn a_dull_green_is_greener_when_converted() {
-        let colorimetry = Contract::default().on(Grid::FIT);
+        let colorimetry = konig2020::contract().on(Grid::FIT);
         let [as_srgb, correct] = [Display::AsSrgb, Display::Correct]
             .map(|display| display.painter(&colorimetry).paint(LinearRgb([0.3, 0.5, 0.3])));
         assert!(correct[0] < as_srgb[0] && correct[1] > as_srgb[1]);

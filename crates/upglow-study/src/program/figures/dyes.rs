@@ -3,10 +3,9 @@
 use upglow::Mixing;
 use upglow_color::{Contract, Grid, Spectrum};
 use upglow_fit::BuildError;
-use upglow_study::{ChromaticityDiagram, DyeSpectra, dye_spectra};
+use upglow_study::{ChromaticityDiagram, DyeSpectra, dye_spectra, konig2020};
 
 use super::{Figure, Studio, chromaticity};
-use crate::cubes::paper_dyes;
 use crate::svg::{ABSORPTION, Anchor, Axis, Drawing, EMISSION, Frame, INK, Rect, Stroke, Text};
 
 /// The dyes whose spectra are shown, counted from 1 as in the paper.
@@ -18,8 +17,8 @@ const SPECTRA_MM: [f64; 2] = [70.0, 27.5];
 const RANGE_NM: [f64; 2] = [300.0, 750.0];
 
 pub(super) fn figure_2(_: &Studio<'_>) -> Result<Figure, BuildError> {
-    let model = paper_dyes(Mixing::default());
-    let contract = Contract::default();
+    let model = konig2020::dyes(Mixing::Pooled);
+    let contract = konig2020::contract();
     let dyes = dye_spectra(&model, &contract.observer);
     let names: Vec<String> = dyes.iter().map(|dye| dye.name.replace('_', " ")).collect();
     let mut drawing = Drawing::new(HEIGHT_MM);

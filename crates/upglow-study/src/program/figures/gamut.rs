@@ -5,13 +5,13 @@ use std::sync::Arc;
 use upglow::Cube;
 use upglow_color::Grid;
 use upglow_fit::{BuildError, CubeSummary};
-use upglow_study::{ChromaticityDiagram, Layer, node_colors};
+use upglow_study::{ChromaticityDiagram, Layer, konig2020, node_colors};
 
 use super::cut::Cut;
 use super::display::Painter;
 use super::sheet::{Sheet, draw_layer, errors_text};
 use super::{Figure, Studio, chromaticity, percent};
-use crate::cubes::{PAPER_SWEEPS, StudyCube};
+use crate::cubes::StudyCube;
 use crate::raster;
 use crate::svg::{Drawing, Rect};
 
@@ -57,11 +57,11 @@ fn caption(studio: &Studio<'_>, rows: &[Row; 2], errors: &[String], bright: &[us
     let within = summaries.map(|s| percent(s.within_1 as f64 / s.nodes as f64));
     format!(
         "Analytic (a, c, e) and dye-based (b, d, f) fluorescence without interpolation, by the \
-         paper's method with ΔE00 and {PAPER_SWEEPS} sweeps. Layers of the {n}³ cube near B = {:.3} (a, b) and \
+         paper's method with ΔE00 and {sweeps} sweeps. Layers of the {n}³ cube near B = {:.3} (a, b) and \
          B = {:.3} (c, d): {}. Chromaticities of all nodes with X + Y + Z ≥ {BRIGHT} (e: {} nodes, f: \
          {}), in the CIE 1931 diagram with the AP1 triangle. Over the whole cube the mean ΔE00 is \
          {:.2} against {:.2}, and {} against {} of the nodes are within 1. Slopes are at most \
-         0.01/nm. {}",
+         {slope}/nm. {}",
         BLUES[0],
         BLUES[1],
         errors.join("; "),
@@ -73,6 +73,8 @@ fn caption(studio: &Studio<'_>, rows: &[Row; 2], errors: &[String], bright: &[us
         within[1],
         studio.display.note(),
         n = studio.cubes.resolution(),
+        sweeps = konig2020::SWEEPS,
+        slope = konig2020::SLOPE_MAX_PER_NM,
     )
 }
 

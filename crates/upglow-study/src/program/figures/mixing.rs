@@ -1,9 +1,9 @@
 //! Figure 5: three kinds of interpolation between two reflectances.
 
 use upglow::Features;
-use upglow_color::{Contract, Grid, Lab};
+use upglow_color::{Grid, Lab};
 use upglow_fit::BuildError;
-use upglow_study::Mixing;
+use upglow_study::{Mixing, konig2020};
 
 use super::sheet::swatch;
 use super::{Figure, Studio};
@@ -33,7 +33,7 @@ const ROWS: [(Mixing, &str); 3] = [
 ];
 
 pub(super) fn figure_5(studio: &Studio<'_>) -> Result<Figure, BuildError> {
-    let colorimetry = Contract::default().on(Grid::FINE);
+    let colorimetry = konig2020::contract().on(Grid::FINE);
     let painter = studio.display.painter(&colorimetry);
     let mut drawing = Drawing::new(ROW_TOP_MM + 2.0 * ROW_STEP_MM + PLOT_MM[1] + FOOT_MM);
     let mut halves = Vec::new();

@@ -1,8 +1,8 @@
 //! Figure 10: which colors any material can match.
 
-use upglow_color::{Contract, StandingKind};
+use upglow_color::StandingKind;
 use upglow_fit::BuildError;
-use upglow_study::standing_layer;
+use upglow_study::{konig2020, standing_layer};
 use upglow_svg::hex;
 
 use super::sheet::{LETTERS, Sheet, swatch};
@@ -18,7 +18,7 @@ const NAMES: [&str; 3] = ["some reflectance", "only fluorescence", "no material"
 const POINTS_PER_STEP: usize = 4;
 
 pub(super) fn figure_10(studio: &Studio<'_>) -> Result<Figure, BuildError> {
-    let contract = Contract::default();
+    let contract = konig2020::contract();
     let nodes = studio.cubes.resolution();
     let side = POINTS_PER_STEP * (nodes - 1) + 1;
     let sheet =
