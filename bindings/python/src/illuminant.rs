@@ -1,5 +1,7 @@
 //! Lights.
 
+use std::path::PathBuf;
+
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 use upglow_color::Grid;
@@ -31,6 +33,12 @@ impl Illuminant {
         upglow_color::Illuminant::from_csv(name, text).map(Self).map_err(value_error)
     }
 
+    /// The light in the CSV text of the file at this path, named after it.
+    #[staticmethod]
+    fn from_csv_file(path: PathBuf, text: &str) -> PyResult<Self> {
+        upglow_color::Illuminant::from_csv_file(&path, text).map(Self).map_err(value_error)
+    }
+
     /// The light with these samples; wavelengths are nm.
     #[staticmethod]
     fn from_samples(
@@ -47,17 +55,7 @@ impl Illuminant {
     /// A light with one Gaussian line; wavelengths are nm.
     #[staticmethod]
     fn line(name: &str, peak_nm: f64, fwhm_nm: f64) -> PyResult<Self> {
-        if !peak_nm.is_finite() {
-            return Err(value_error(format_args!(
-                "peak_nm is {peak_nm}, expected a finite number"
-            )));
-        }
-        if !(fwhm_nm.is_finite() && fwhm_nm > 0.0) {
-            return Err(value_error(format_args!("fwhm_nm is {fwhm_nm}, expected > 0")));
-        }
-        let line = upglow_color::Illuminant::line(name, peak_nm, fwhm_nm);
-        let checked = upglow_color::Illuminant::from_spectrum(name, line.power());
-        checked.map(Self).map_err(value_error)
+        upglow_color::Illuminant::line(name, peak_nm, fwhm_nm).map(Self).map_err(value_error)
     }
 
     /// The name that files state.

@@ -1,5 +1,7 @@
 //! Observers.
 
+use std::path::PathBuf;
+
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
@@ -29,6 +31,12 @@ impl Observer {
     #[staticmethod]
     fn from_csv(name: &str, text: &str) -> PyResult<Self> {
         upglow_color::Observer::from_csv(name, text).map(Self).map_err(value_error)
+    }
+
+    /// The observer in the CSV text of the file at this path, named after it.
+    #[staticmethod]
+    fn from_csv_file(path: PathBuf, text: &str) -> PyResult<Self> {
+        upglow_color::Observer::from_csv_file(&path, text).map(Self).map_err(value_error)
     }
 
     /// The observer with these samples, `[wavelength][x y z]`; wavelengths are nm.

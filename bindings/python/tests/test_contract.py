@@ -45,6 +45,21 @@ def test_a_light_is_a_name_a_file_or_samples(tmp_path) -> None:
     assert upglow.Contract(illuminant=str(path)).illuminant.name == "D50"
 
 
+def test_a_light_of_other_numbers_never_has_a_built_in_name(tmp_path) -> None:
+    flat = (upglow.FINE_NM, np.ones(upglow.FINE_NM.size))
+    path = tmp_path / "A.csv"
+    path.write_text("wavelength_nm,power\n" + "".join(f"{nm:g},1\n" for nm in flat[0]))
+    assert upglow.Illuminant(path).name == "A.csv"
+    assert upglow.Illuminant(path, name="lamp").name == "lamp"
+    for make in (
+        lambda: upglow.Illuminant(flat, name="a"),
+        lambda: upglow.Illuminant(path, name="D65"),
+        lambda: upglow.Illuminant.line(450, 20, name="E"),
+    ):
+        with pytest.raises(ValueError, match="is a built-in illuminant whose power at 300 nm is"):
+            make()
+
+
 @pytest.mark.parametrize(
     ("make", "message"),
     [

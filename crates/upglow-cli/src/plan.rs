@@ -48,7 +48,7 @@ fn contract(args: &ContractArgs) -> Result<Contract, Failure> {
             &args.observer,
             "x,y,z",
             Observer::named,
-            Observer::from_csv,
+            Observer::from_csv_file,
         )?,
         adaptation: args.adapt,
     })
@@ -62,7 +62,7 @@ pub(crate) fn checked(contract: Contract) -> Result<Contract, Failure> {
 
 /// The light of a name or file, given with `option`.
 pub(crate) fn light(option: &str, text: &str) -> Result<Illuminant, Failure> {
-    named_or_read(option, text, "power", Illuminant::named, Illuminant::from_csv)
+    named_or_read(option, text, "power", Illuminant::named, Illuminant::from_csv_file)
 }
 
 /// The built-in value of this name, or that of the CSV file at this path, named after the file.
@@ -71,15 +71,14 @@ fn named_or_read<T, E: Error + Send + Sync + 'static>(
     text: &str,
     columns: &str,
     named: fn(&str) -> Result<T, E>,
-    from_csv: fn(&str, &str) -> Result<T, E>,
+    from_csv_file: fn(&Path, &str) -> Result<T, E>,
 ) -> Result<T, Failure> {
     let path = Path::new(text);
     match named(text) {
         Err(_) if is_path(path) => {
             let expected = format!("a CSV file with the header wavelength_nm,{columns}");
             let text = files::read_text(path, &expected)?;
-            let name = path.file_stem().map(|stem| stem.to_string_lossy()).unwrap_or_default();
-            from_csv(&name, &text).map_err(|error| Failure::file(path, error))
+            from_csv_file(path, &text).map_err(|error| Failure::file(path, error))
         }
         named => named.map_err(|error| Failure::option(option, error)),
     }

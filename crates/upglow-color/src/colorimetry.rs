@@ -20,6 +20,11 @@ pub struct Colorimetry {
     rgb_from_xyz: Matrix3,
 }
 
+/// Least visible share of a light, and least X or Z of its white, where Y is 1. Below it, colors that
+/// fluorescence adds or that adaptation scales leave the range of single precision when they are
+/// multiplied; above it, a lamp whose light is nearly all ultraviolet would be refused.
+pub(crate) const LEAST_SHARE: f64 = 1e-12;
+
 impl Colorimetry {
     pub(crate) fn try_new(contract: &Contract, grid: Grid) -> Result<Self, ContractError> {
         let matching = contract.observer.on(grid);
@@ -31,12 +36,18 @@ impl Colorimetry {
             let step_nm = grid.step_nm();
             return Err(ContractError::Dark { observer, illuminant, step_nm });
         }
+        let power: f64 = light.iter().sum();
+        let share = luminance / (power * contract.observer.matching()[1].peak());
+        if share < LEAST_SHARE {
+            let (observer, illuminant) = names();
+            return Err(ContractError::Dim { observer, illuminant, share });
+        }
         let irradiance: Vec<f64> = light.iter().map(|l| l / luminance).collect();
         let (weights, white) = weights(&irradiance, &matching);
         let space_white = Xyz::from_chromaticity(contract.space.white());
         let xyz_from_rgb = contract.adaptation.target_from_source(space_white, white)
             * contract.space.xyz_from_rgb();
-        let is_bright = white.0.iter().all(|v| v.is_normal() && *v > 0.0);
+        let is_bright = white.0.iter().all(|v| (LEAST_SHARE..=LEAST_SHARE.recip()).contains(v));
         let rgb_from_xyz = xyz_from_rgb.inverse().filter(|_| is_bright).ok_or_else(|| {
             let (observer, illuminant) = names();
             ContractError::White { observer, illuminant, white: white.0 }

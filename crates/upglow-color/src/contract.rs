@@ -1,7 +1,7 @@
 //! What defines which color an RGB triple is.
 
 use crate::adaptation::Adaptation;
-use crate::colorimetry::Colorimetry;
+use crate::colorimetry::{Colorimetry, LEAST_SHARE};
 use crate::grid::Grid;
 use crate::illuminant::Illuminant;
 use crate::observer::Observer;
@@ -50,9 +50,24 @@ pub enum ContractError {
         /// Step of the sums, nm.
         step_nm: u32,
     },
-    /// Colors cannot be adapted to the light's white: its X, Y or Z is zero, or the matrix from RGB to
-    /// XYZ has no inverse.
-    #[error("the white of {illuminant} for {observer} is XYZ {white:?}, expected X, Y and Z > 0")]
+    /// Nearly all of the light is invisible to the observer.
+    #[error(
+        "the observer {observer} sees {share:e} of the power of the light {illuminant}, expected at least {LEAST_SHARE:e}"
+    )]
+    Dim {
+        /// Name of the observer.
+        observer: String,
+        /// Name of the light.
+        illuminant: String,
+        /// Luminance over the power of all wavelengths, where it would be 1 at the peak of ȳ.
+        share: f64,
+    },
+    /// Colors cannot be adapted to the light's white: its X or Z is nearly zero or too great, or the
+    /// matrix from RGB to XYZ has no inverse.
+    #[error(
+        "the white of {illuminant} for {observer} is XYZ {white:?}, expected X and Z from {LEAST_SHARE:e} to {:e}",
+        LEAST_SHARE.recip()
+    )]
     White {
         /// Name of the observer.
         observer: String,
@@ -102,12 +117,25 @@ mod tests {
 
     #[test]
     fn a_light_between_the_samples_of_a_sum_is_refused() {
-        let illuminant = Illuminant::line("needle", 562.0, 0.01);
+        let illuminant = Illuminant::line("needle", 562.0, 0.01).unwrap();
         let refused = Contract { illuminant, ..Contract::default() }.check().unwrap_err();
         assert_eq!(
             refused.to_string(),
             "the observer CIE 1931 2° sees nothing of the light needle in sums over 5 nm, expected Y > 0"
         );
+    }
+
+    #[test]
+    fn a_light_that_is_nearly_all_ultraviolet_is_refused() {
+        let lamp = |share: f64| {
+            let power = |nm: f64| if nm < 360.0 { 1.0 } else { share };
+            let values = Grid::FINE.wavelengths_nm().map(power).collect();
+            let power = Spectrum::new(Grid::FINE, values).unwrap();
+            let illuminant = Illuminant::from_spectrum("lamp", &power).unwrap();
+            Contract { illuminant, ..Contract::default() }.check()
+        };
+        assert_eq!(lamp(1e-9), Ok(()));
+        assert!(matches!(lamp(1e-14), Err(ContractError::Dim { .. })));
     }
 
     #[test]
@@ -127,7 +155,7 @@ mod tests {
         let rows: Vec<[f64; 3]> =
             nm.iter().map(|&nm| known.matching().each_ref().map(|m| m.at(nm))).collect();
         let observer = Observer::from_samples("from 400", &nm, &rows).unwrap();
-        let illuminant = Illuminant::line("uv", 365.0, 2.0);
+        let illuminant = Illuminant::line("uv", 365.0, 2.0).unwrap();
         let lit = Contract { illuminant: illuminant.clone(), ..Contract::default() };
         assert_eq!(lit.check(), Ok(()));
         let contract = Contract { illuminant, observer, ..Contract::default() };

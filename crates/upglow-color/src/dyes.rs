@@ -1,7 +1,10 @@
 //! The built-in measured dyes. A new one is two columns of `tables/dyes.csv`.
 
+use std::path::Path;
+
 use crate::grid::Grid;
-use crate::samples::{SampleRules, SamplesError, curves_from_samples};
+use crate::names::{NameError, name_after_file};
+use crate::samples::{SampleRules, SamplesError, check_peak, curves_from_samples};
 use crate::spectrum::Spectrum;
 use crate::tables::dyes::{DYE_SETS, DYES, DYES_FIRST_NM, DYES_STEP_NM, DyeRow};
 
@@ -41,6 +44,65 @@ impl MeasuredDye {
             curves_from_samples(wavelengths_nm, columns, SampleRules::DYE)?;
         let (name, provenance) = (name.to_owned(), String::new());
         Ok(Self { name, absorption, emission, quantum_yield: None, provenance })
+    }
+
+    /// The dye with both curves divided by their peaks, as most spectra are published.
+    #[must_use]
+    pub fn normalized(self) -> Self {
+        let to_one = |curve: Spectrum| {
+            let peak = curve.peak();
+            let values = curve.values().iter().map(|v| v / peak).collect();
+            Spectrum::new(curve.grid(), values).unwrap_or(curve)
+        };
+        Self { absorption: to_one(self.absorption), emission: to_one(self.emission), ..self }
+    }
+
+    /// The dye named after a file: by its stem, or by its whole name where the stem is that of a
+    /// built-in dye with other numbers.
+    #[must_use]
+    pub fn named_after(self, path: &Path) -> Self {
+        let is_taken = |name: &str| {
+            let dye = Self { name: name.into(), ..self.clone() };
+            matches!(dye.check_name(), Err(NameError::Taken { .. }))
+        };
+        Self { name: name_after_file(path, is_taken), ..self }
+    }
+
+    /// Checks that name and provenance are lines of text, and that a built-in name comes with the
+    /// built-in curves and quantum yield.
+    ///
+    /// # Errors
+    ///
+    /// [`NameError`] says which number differs.
+    pub fn check_name(&self) -> Result<(), NameError> {
+        NameError::check_text(&self.name)?;
+        NameError::check_text(&self.provenance)?;
+        let Some(known) = Self::named(&self.name) else { return Ok(()) };
+        let check = |column, found: &Spectrum, known: &Spectrum| {
+            NameError::check_curve("dye", &self.name, column, found, known, 0.0)
+        };
+        check("absorption", &self.absorption.resampled(Grid::FINE), &known.absorption)?;
+        check("emission", &self.emission.resampled(Grid::FINE), &known.emission)?;
+        if self.quantum_yield == known.quantum_yield {
+            return Ok(());
+        }
+        let text = |q: Option<f64>| q.map_or("unpublished".into(), |q| q.to_string());
+        Err(NameError::Taken {
+            kind: "dye",
+            name: self.name.clone(),
+            number: "quantum yield".into(),
+            expected: text(known.quantum_yield),
+            found: text(self.quantum_yield),
+        })
+    }
+
+    /// Checks that the greatest sample of the emission can be calculated with: 1e-30 to 1e30.
+    ///
+    /// # Errors
+    ///
+    /// [`SamplesError::Peak`] holds it.
+    pub fn check_emission_peak(&self) -> Result<(), SamplesError> {
+        check_peak("emission", &self.emission)
     }
 
     /// Every built-in dye, in order of their names.
@@ -105,6 +167,30 @@ mod tests {
         let refused =
             MeasuredDye::from_samples("x", &nm[100..], &absorption[100..], &emission[100..]);
         assert!(refused.unwrap_err().to_string().starts_with("covers 400 to 830 nm, expected at"));
+    }
+
+    #[test]
+    fn a_built_in_name_is_for_the_built_in_numbers_only() {
+        let known = MeasuredDye::named("ATTO_390").unwrap();
+        assert_eq!(known.check_name(), Ok(()));
+        let brighter = MeasuredDye { quantum_yield: Some(1.0), ..known.clone() };
+        let expected = "\"ATTO_390\" is a built-in dye whose quantum yield is 0.9, found 1: \
+                        expected the built-in numbers, or another name";
+        assert_eq!(brighter.check_name().unwrap_err().to_string(), expected);
+        let swapped = MeasuredDye { name: "ATTO_425".into(), ..known.clone() };
+        assert!(swapped.check_name().is_err());
+        assert_eq!(brighter.named_after(Path::new("my/ATTO_390.csv")).name, "ATTO_390.csv");
+        assert_eq!(known.named_after(Path::new("my/ATTO_390.csv")).name, "ATTO_390");
+    }
+
+    #[test]
+    fn normalized_curves_peak_at_one() {
+        let known = MeasuredDye::named("ATTO_390").unwrap();
+        let emission = known.emission.clone().scaled(4.0);
+        let absorption = known.absorption.clone().scaled(0.25);
+        let dye = MeasuredDye { absorption, emission, ..known.clone() }.normalized();
+        assert_eq!(dye, known.normalized());
+        assert_eq!((dye.absorption.peak(), dye.emission.peak()), (1.0, 1.0));
     }
 
     #[test]

@@ -1,6 +1,9 @@
 //! Light sources.
 
+use std::path::Path;
+
 use crate::grid::Grid;
+use crate::names::{NameError, name_after_file};
 use crate::samples::{SampleRules, SamplesError, curves_from_samples};
 use crate::spectrum::{Spectrum, SpectrumCsvError, read_columns};
 use crate::tables::daylight::{DAYLIGHT_COMPONENTS, DAYLIGHT_FIRST_NM, DAYLIGHT_STEP_NM};
@@ -31,6 +34,19 @@ pub enum IlluminantError {
     /// The samples are not a spectrum.
     #[error(transparent)]
     Samples(#[from] SamplesError),
+    /// The peak or width of a line is not a wavelength.
+    #[error("{what} is {found}, expected {expected}")]
+    Line {
+        /// `peak_nm` or `fwhm_nm`.
+        what: &'static str,
+        /// The number given, nm.
+        found: f64,
+        /// What it should be.
+        expected: &'static str,
+    },
+    /// The name cannot be that of this light.
+    #[error(transparent)]
+    Name(#[from] NameError),
     /// The light has no power at visible wavelengths.
     #[error("no power between 360 and 830 nm, expected some")]
     Invisible,
@@ -39,6 +55,11 @@ pub enum IlluminantError {
 /// Today's second radiation constant (1.438776877e-2 m·K) over that of the temperature scale in which
 /// the nominal color temperatures of daylight were defined (1.4380e-2 m·K): they scale by the ratio.
 const C2_NOW_OVER_C2_THEN: f64 = 1.438_776_877 / 1.438_0;
+
+/// Greatest difference of a power from that of the built-in light of the same name, relative to the
+/// greatest power: rounding of `exp` and `powi`, which differs between platforms by some units of
+/// the last place, and of samples printed with fifteen digits.
+const NAME_TOLERANCE: f64 = 1e-12;
 
 /// The wavelength at which daylights and illuminant A have power 100, nm.
 const REFERENCE_NM: f64 = 560.0;
@@ -74,6 +95,22 @@ impl Illuminant {
         Self::from_spectrum(name, &power)
     }
 
+    /// The light in the CSV text of a file, named after the file: by its stem, or by its whole name
+    /// where the stem is that of a built-in light with other numbers.
+    ///
+    /// # Errors
+    ///
+    /// As [`Illuminant::from_csv`].
+    pub fn from_csv_file(path: &Path, text: &str) -> Result<Self, IlluminantError> {
+        let is_taken = |name: &str| {
+            matches!(
+                Self::from_csv(name, text),
+                Err(IlluminantError::Name(NameError::Taken { .. }))
+            )
+        };
+        Self::from_csv(&name_after_file(path, is_taken), text)
+    }
+
     /// A light from samples of its relative power: ascending wavelengths (nm) from 300 to 830 nm in
     /// steps of at most 10 nm, and a power of 0 or more for each.
     ///
@@ -94,7 +131,8 @@ impl Illuminant {
     ///
     /// # Errors
     ///
-    /// [`IlluminantError`] if a power is negative, or all are zero from 360 to 830 nm.
+    /// [`IlluminantError`] if a power is negative, if all are zero from 360 to 830 nm, or if the name
+    /// is that of a built-in light with other numbers.
     pub fn from_spectrum(name: &str, power: &Spectrum) -> Result<Self, IlluminantError> {
         let power = power.resampled(Grid::FINE);
         SampleRules::LIGHT.check_curve("power", &power)?;
@@ -102,14 +140,38 @@ impl Illuminant {
         if power.values()[first_visible..].iter().all(|&p| p <= 0.0) {
             return Err(IlluminantError::Invisible);
         }
+        NameError::check_text(name)?;
+        if let Ok(known) = Self::named(name) {
+            NameError::check_curve(
+                "illuminant",
+                name,
+                "power",
+                &power,
+                &known.power,
+                NAME_TOLERANCE,
+            )?;
+        }
         Ok(Self { name: name.into(), power })
     }
 
     /// A lamp with one Gaussian line, like an ultraviolet LED: peak and full width at half maximum in
     /// nm, power 100 at the peak.
-    pub fn line(name: &str, peak_nm: f64, fwhm_nm: f64) -> Self {
+    ///
+    /// # Errors
+    ///
+    /// [`IlluminantError`] if the width is not above 0, if no power is left between 360 and 830 nm, or
+    /// if the name is that of a built-in light.
+    pub fn line(name: &str, peak_nm: f64, fwhm_nm: f64) -> Result<Self, IlluminantError> {
+        let fault = |what, found, expected| Err(IlluminantError::Line { what, found, expected });
+        if !peak_nm.is_finite() {
+            return fault("peak_nm", peak_nm, "a finite number");
+        }
+        if !(fwhm_nm.is_finite() && fwhm_nm > 0.0) {
+            return fault("fwhm_nm", fwhm_nm, "> 0");
+        }
         let shape = |nm: f64| (-4.0 * 2f64.ln() * ((nm - peak_nm) / fwhm_nm).powi(2)).exp();
-        Self::from_fn(name, |nm| 100.0 * shape(nm))
+        let line = Self::from_fn(name, |nm| 100.0 * shape(nm));
+        Self::from_spectrum(name, &line.power)
     }
 
     /// A phase of daylight of the given nominal correlated color temperature.
@@ -237,6 +299,58 @@ mod tests {
             Illuminant::from_samples("lamp", &nm, &negative).unwrap_err().to_string(),
             "sample 0: -1 in column \"power\", expected a value of 0 or more"
         );
+    }
+
+    #[test]
+    fn a_built_in_name_is_for_the_built_in_light_only() {
+        let flat = Spectrum::new(Grid::FINE, vec![1.0; Grid::FINE.len()]).unwrap();
+        for name in Illuminant::NAMES {
+            let known = Illuminant::named(name).unwrap();
+            for spelling in [name.to_owned(), name.to_lowercase()] {
+                let same = Illuminant::from_spectrum(&spelling, known.power()).unwrap();
+                assert_eq!(same.power(), known.power());
+                let other = Illuminant::from_spectrum(&spelling, &flat).unwrap_err();
+                assert!(matches!(other, IlluminantError::Name(NameError::Taken { .. })), "{name}");
+                assert!(Illuminant::line(&spelling, 450.0, 20.0).is_err(), "{name}");
+            }
+        }
+        let refused = Illuminant::from_spectrum("E", &flat).unwrap_err().to_string();
+        assert_eq!(
+            refused,
+            "\"E\" is a built-in illuminant whose power at 300 nm is 100, found 1: \
+             expected the built-in numbers, or another name"
+        );
+        assert!(Illuminant::from_spectrum("two\nlines", &flat).is_err());
+    }
+
+    #[test]
+    fn a_light_from_a_file_never_hides_a_built_in_one() {
+        let text = |light: &Illuminant| {
+            let power = light.power().values().iter();
+            let rows = Grid::FINE.wavelengths_nm().zip(power).map(|(nm, p)| format!("{nm},{p}\n"));
+            "wavelength_nm,power\n".to_owned() + &rows.collect::<String>()
+        };
+        let named = |path: &str, light: &Illuminant| {
+            Illuminant::from_csv_file(Path::new(path), &text(light)).unwrap().name().to_owned()
+        };
+        let [a, e] = ["A", "E"].map(|name| Illuminant::named(name).unwrap());
+        assert_eq!(named("lamps/A.csv", &e), "A.csv");
+        assert_eq!(named("lamps/a.csv", &e), "a.csv");
+        assert_eq!(named("lamps/A.csv", &a), "A");
+        assert_eq!(named("lamps/f11.csv", &e), "f11");
+        assert!(Illuminant::from_csv_file(Path::new("lamps/A"), &text(&e)).is_err());
+    }
+
+    #[test]
+    fn powers_beyond_the_range_of_sums_are_refused() {
+        for (power, holds) in [(1e-31, false), (1e-30, true), (1e30, true), (1e31, false)] {
+            let light = Spectrum::new(Grid::FINE, vec![power; Grid::FINE.len()]).unwrap();
+            assert_eq!(Illuminant::from_spectrum("x", &light).is_ok(), holds, "{power}");
+        }
+        for [peak_nm, fwhm_nm] in [[f64::NAN, 1.0], [500.0, 0.0], [500.0, f64::INFINITY]] {
+            let line = Illuminant::line("x", peak_nm, fwhm_nm);
+            assert!(matches!(line, Err(IlluminantError::Line { .. })));
+        }
     }
 
     #[test]

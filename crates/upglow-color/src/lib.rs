@@ -38,6 +38,7 @@ mod jet;
 mod lab;
 mod matrix;
 mod metric;
+mod names;
 mod observer;
 mod rgb_space;
 #[doc(hidden)]
@@ -73,6 +74,7 @@ pub use illuminant::{Illuminant, IlluminantError};
 pub use lab::{Lab, lab_from_xyz};
 pub use matrix::Matrix3;
 pub use metric::{Goal, Metric};
+pub use names::NameError;
 pub use observer::{Observer, ObserverError};
 pub use rgb_space::{RgbSpace, RgbSpaceError};
 pub use samples::{SampleRules, SamplesError};

@@ -1,7 +1,10 @@
 //! Observers: sets of color-matching functions.
 
+use std::path::Path;
+
 use crate::grid::Grid;
 use crate::matrix::Matrix3;
+use crate::names::{NameError, name_after_file};
 use crate::samples::{SampleRules, SamplesError, curves_from_samples};
 use crate::spectrum::{Spectrum, SpectrumCsvError, read_columns};
 use crate::tables::observer::{CIE_1931_2DEG, CIE_1931_2DEG_FIRST_NM};
@@ -36,6 +39,9 @@ pub enum ObserverError {
     /// The samples do not define color-matching functions.
     #[error(transparent)]
     Samples(#[from] SamplesError),
+    /// The name cannot be that of this observer.
+    #[error(transparent)]
+    Name(#[from] NameError),
     /// One function is zero or a linear combination of the others.
     #[error("x, y and z are linearly dependent, expected three independent functions")]
     Dependent,
@@ -91,6 +97,19 @@ impl Observer {
         Self::from_spectra(name, read_columns(text, COLUMNS, SampleRules::OBSERVER)?)
     }
 
+    /// The observer in the CSV text of a file, named after the file: by its stem, or by its whole name
+    /// where the stem is that of a built-in observer with other numbers.
+    ///
+    /// # Errors
+    ///
+    /// As [`Observer::from_csv`].
+    pub fn from_csv_file(path: &Path, text: &str) -> Result<Self, ObserverError> {
+        let is_taken = |name: &str| {
+            matches!(Self::from_csv(name, text), Err(ObserverError::Name(NameError::Taken { .. })))
+        };
+        Self::from_csv(&name_after_file(path, is_taken), text)
+    }
+
     /// An observer from samples: ascending wavelengths (nm) over at least 400 to 700 nm in steps of at
     /// most 5 nm, and x̄, ȳ, z̄ of 0 or more for each, `[wavelength][x̄ ȳ z̄]`. It is zero beyond them;
     /// NaN at either end of a function counts as zero.
@@ -113,8 +132,8 @@ impl Observer {
     ///
     /// # Errors
     ///
-    /// [`ObserverError`] if a function is negative or not zero below 360 nm, or if the functions are
-    /// linearly dependent.
+    /// [`ObserverError`] if a function is negative or not zero below 360 nm, if the functions are
+    /// linearly dependent, or if the name is that of a built-in observer with other functions.
     pub fn from_spectra(name: &str, matching: [Spectrum; 3]) -> Result<Self, ObserverError> {
         let matching = matching.map(|curve| curve.resampled(Grid::FINE));
         for (column, curve) in COLUMNS.into_iter().zip(&matching) {
@@ -124,6 +143,13 @@ impl Observer {
         // NaN where a function is zero.
         if volume.is_nan() || volume < LEAST_VOLUME {
             return Err(ObserverError::Dependent);
+        }
+        NameError::check_text(name)?;
+        if let Ok(known) = Self::named(name) {
+            for ((column, found), known) in COLUMNS.into_iter().zip(&matching).zip(&known.matching)
+            {
+                NameError::check_curve("observer", name, column, found, known, 0.0)?;
+            }
         }
         Ok(Self { name: name.into(), matching })
     }
@@ -182,6 +208,20 @@ mod tests {
         let lines = nm.iter().zip(&rows).map(|(nm, [x, y, z])| format!("{nm},{x},{y},{z}\n"));
         let text = "wavelength_nm,x,y,z\n".to_owned() + &lines.collect::<String>();
         assert_eq!(Observer::from_csv("CIE 1931 2°", &text).unwrap(), Observer::default());
+    }
+
+    #[test]
+    fn a_built_in_name_is_for_the_built_in_functions_only() {
+        let (nm, mut rows) = table(360, 830, 1);
+        rows[100][1] *= 1.01;
+        for name in ["CIE 1931 2°", Observer::NAMES[0]] {
+            let refused = Observer::from_samples(name, &nm, &rows).unwrap_err();
+            assert!(matches!(refused, ObserverError::Name(NameError::Taken { .. })));
+        }
+        let lines = nm.iter().zip(&rows).map(|(nm, [x, y, z])| format!("{nm},{x},{y},{z}\n"));
+        let text = "wavelength_nm,x,y,z\n".to_owned() + &lines.collect::<String>();
+        let path = Path::new("eyes/cie-1931-2deg.csv");
+        assert_eq!(Observer::from_csv_file(path, &text).unwrap().name(), "cie-1931-2deg.csv");
     }
 
     #[test]

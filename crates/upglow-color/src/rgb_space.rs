@@ -1,6 +1,7 @@
 //! RGB color spaces: primaries and a white. A new space is one line of [`SPACES`].
 
 use crate::matrix::Matrix3;
+use crate::names::NameError;
 use crate::values::Xyz;
 
 /// The primaries and white of an RGB space, as CIE 1931 chromaticities.
@@ -28,8 +29,16 @@ pub enum RgbSpaceError {
         /// The name given.
         found: String,
     },
-    /// A chromaticity is not a number, or the white has y of zero or less.
-    #[error("chromaticity ({}, {}), expected finite numbers, and y > 0 for the white", .found[0], .found[1])]
+    /// The name cannot be that of this space.
+    #[error(transparent)]
+    Name(#[from] NameError),
+    /// A chromaticity is not a number in -10..=10, or the white has a y below 0.001.
+    #[error(
+        "chromaticity ({}, {}), expected numbers from -{LARGEST} to {LARGEST}, and a y of at least \
+         {LEAST_WHITE_Y} for the white",
+        .found[0],
+        .found[1]
+    )]
     Chromaticity {
         /// The chromaticity given.
         found: [f64; 2],
@@ -44,6 +53,15 @@ pub enum RgbSpaceError {
         white: [f64; 2],
     },
 }
+
+/// Greatest size of a chromaticity coordinate. Published spaces stay below 2; much larger numbers leave
+/// the range in which matrices can be inverted.
+const LARGEST: f64 = 10.0;
+/// Least y of a white: X, Y, Z of the white are at most 10 000 times its luminance.
+const LEAST_WHITE_Y: f64 = 1e-3;
+/// Least area of the triangle of primaries, and least amount of a primary in white. Below it the
+/// matrix from XYZ to RGB magnifies rounding in single precision to visible differences.
+const LEAST_SHARE: f64 = 1e-6;
 
 const D65_WHITE: [f64; 2] = [0.3127, 0.3290];
 /// The white of SMPTE TB-2018-001, near D60.
@@ -92,24 +110,48 @@ impl RgbSpace {
     ///
     /// # Errors
     ///
-    /// [`RgbSpaceError`] unless the primaries form a triangle around the white.
+    /// [`RgbSpaceError`] unless the primaries form a triangle around the white, or if the name is that
+    /// of a built-in space with other chromaticities.
     pub fn custom(
         name: &str,
         primaries: [[f64; 2]; 3],
         white: [f64; 2],
     ) -> Result<Self, RgbSpaceError> {
-        let wrong = |c: &[f64; 2]| !c.iter().all(|v| v.is_finite());
+        let wrong = |c: &[f64; 2]| !c.iter().all(|v| v.abs() <= LARGEST);
         if let Some(&found) = primaries.iter().chain([&white]).find(|c| wrong(c)) {
             return Err(RgbSpaceError::Chromaticity { found });
         }
-        if white[1] <= 0.0 {
+        if white[1] < LEAST_WHITE_Y {
             return Err(RgbSpaceError::Chromaticity { found: white });
         }
         let shares = Self::shares(primaries, white).ok_or(RgbSpaceError::Degenerate)?;
-        if shares.iter().any(|&s| !s.is_finite() || s <= 0.0) {
+        if shares.iter().any(|&s| !s.is_finite() || s < LEAST_SHARE) {
             return Err(RgbSpaceError::WhiteOutside { white });
         }
-        Ok(Self { name: name.into(), primaries, white })
+        let space = Self { name: name.into(), primaries, white };
+        space.check_name()?;
+        Ok(space)
+    }
+
+    /// Checks that a built-in name comes with the built-in chromaticities.
+    fn check_name(&self) -> Result<(), NameError> {
+        NameError::check_text(&self.name)?;
+        let Ok(known) = Self::named(&self.name) else { return Ok(()) };
+        let corners = |space: &Self| {
+            let [red, green, blue] = space.primaries;
+            [("red", red), ("green", green), ("blue", blue), ("white", space.white)]
+        };
+        let differs = |(found, known): &((_, _), (_, _))| found != known;
+        let mut pairs = corners(self).into_iter().zip(corners(&known));
+        pairs.find(differs).map_or(Ok(()), |((corner, found), (_, expected))| {
+            Err(NameError::Taken {
+                kind: "RGB space",
+                name: self.name.clone(),
+                number: format!("chromaticity of {corner}"),
+                expected: format!("{expected:?}"),
+                found: format!("{found:?}"),
+            })
+        })
     }
 
     /// The name that files state.
@@ -135,7 +177,12 @@ impl RgbSpace {
 
     /// Amounts of the primaries that add up to the white; `None` if the primaries lie on one line.
     fn shares(primaries: [[f64; 2]; 3], white: [f64; 2]) -> Option<[f64; 3]> {
-        Some(directions(primaries).inverse()? * Xyz::from_chromaticity(white).0)
+        let directions = directions(primaries);
+        // Twice the area of the triangle.
+        if directions.determinant().abs() < LEAST_SHARE {
+            return None;
+        }
+        Some(directions.inverse()? * Xyz::from_chromaticity(white).0)
     }
 }
 
@@ -190,6 +237,24 @@ mod tests {
         assert_eq!(RgbSpace::named("Rec.2020").unwrap().name(), "rec2020");
         assert!(
             RgbSpace::named("rec709").unwrap_err().to_string().starts_with("unknown RGB space")
+        );
+    }
+
+    #[test]
+    fn a_built_in_name_is_for_the_built_in_chromaticities_only() {
+        for (name, primaries, white) in SPACES {
+            assert!(RgbSpace::custom(name, primaries, white).is_ok());
+            let shifted = [white[0], white[1] + 1e-4];
+            let refused = RgbSpace::custom(&name.to_uppercase(), primaries, shifted).unwrap_err();
+            assert!(matches!(refused, RgbSpaceError::Name(NameError::Taken { .. })), "{name}");
+            assert!(RgbSpace::custom("mine", primaries, shifted).is_ok());
+        }
+        let [_, (_, aces, white), ..] = SPACES;
+        let refused = RgbSpace::custom("srgb", aces, white).unwrap_err().to_string();
+        assert_eq!(
+            refused,
+            "\"srgb\" is a built-in RGB space whose chromaticity of red is [0.64, 0.33], \
+             found [0.7347, 0.2653]: expected the built-in numbers, or another name"
         );
     }
 

@@ -21,6 +21,10 @@ pub struct SampleRules {
     range_hint: &'static str,
 }
 
+/// Range of the greatest sample of a relative curve: a light, a color-matching function, an emission.
+/// Beyond it, sums of products leave the range of single or double precision.
+pub(crate) const RELATIVE_PEAKS: [f64; 2] = [1e-30, 1e30];
+
 /// First and last wavelength of the tables, nm.
 const TABLES_NM: [f64; 2] = [300.0, 830.0];
 
@@ -75,8 +79,19 @@ impl SampleRules {
     /// Checks every sample of a curve that was not read from samples.
     pub(crate) fn check_curve(&self, column: &str, curve: &Spectrum) -> Result<(), SamplesError> {
         let mut samples = curve.grid().wavelengths_nm().zip(curve.values());
-        samples.try_for_each(|(nm, &found)| self.check(|| format!("{nm} nm"), column, nm, found))
+        samples
+            .try_for_each(|(nm, &found)| self.check(|| format!("{nm} nm"), column, nm, found))?;
+        check_peak(column, curve)
     }
+}
+
+/// Checks that the greatest sample of a relative curve is zero or in [`RELATIVE_PEAKS`].
+pub(crate) fn check_peak(column: &str, curve: &Spectrum) -> Result<(), SamplesError> {
+    let ([least, most], found) = (RELATIVE_PEAKS, curve.peak());
+    if found == 0.0 || (least..=most).contains(&found) {
+        return Ok(());
+    }
+    Err(SamplesError::Peak { column: column.into(), found })
 }
 
 /// Why samples do not define curves.
@@ -133,6 +148,18 @@ pub enum SamplesError {
         to_nm: f64,
         /// A suggestion, or empty.
         hint: &'static str,
+    },
+    /// The greatest sample of a relative curve is too small or too great to calculate with.
+    #[error(
+        "the greatest value in column {column:?} is {found:e}, expected {:e} to {:e}",
+        RELATIVE_PEAKS[0],
+        RELATIVE_PEAKS[1]
+    )]
+    Peak {
+        /// Name of the column.
+        column: String,
+        /// The greatest sample.
+        found: f64,
     },
     /// There are no samples.
     #[error("no samples, expected one for each wavelength")]

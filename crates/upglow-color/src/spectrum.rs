@@ -98,6 +98,11 @@ impl Spectrum {
         area * step_nm
     }
 
+    /// The greatest sample.
+    pub fn peak(&self) -> f64 {
+        self.values.iter().copied().fold(f64::NEG_INFINITY, f64::max)
+    }
+
     /// Every sample times `factor`.
     pub fn scaled(mut self, factor: f64) -> Self {
         self.values.iter_mut().for_each(|v| *v *= factor);

@@ -20,7 +20,9 @@ class Illuminant(NamedTable):
         arrays of shape (n,), or a ``colour.SpectralDistribution``. Sampled light covers 300 to 830
         nm in steps of at most 10 nm; powers are 0 or more.
     name
-        The name that files state; by default that of the source.
+        The name that files state; by default that of the source. A file's is its stem, or its whole
+        name where the stem is that of a built-in light with other numbers. A built-in name with
+        other numbers is refused.
 
     Raises
     ------

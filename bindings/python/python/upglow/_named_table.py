@@ -40,7 +40,7 @@ class NamedTable:
 
     @classmethod
     def _named_or_read(cls, word: str, name: str | None) -> Any:
-        """A built-in table, or one from a file, called `name` or by the file's stem."""
+        """A built-in table, or one from a file, called `name` or after the file."""
         try:
             return cls._kind.named(word)
         except ValueError:
@@ -49,7 +49,9 @@ class NamedTable:
         path = Path(word)
         text = path.read_text(encoding="utf-8")
         try:
-            return cls._kind.from_csv(name or path.stem, text)
+            if name:
+                return cls._kind.from_csv(name, text)
+            return cls._kind.from_csv_file(path, text)
         except ValueError as error:
             raise ValueError(f"{path}: {error}") from None
 

@@ -22,7 +22,9 @@ class Observer(NamedTable):
         700 nm in steps of at most 5 nm, and are 0 or more; beyond them, and where samples at either
         end are NaN, the functions are 0. Below 360 nm samples must be 0.
     name
-        The name that files state; by default that of the source.
+        The name that files state; by default that of the source. A file's is its stem, or its whole
+        name where the stem is that of a built-in observer with other numbers. A built-in name with
+        other numbers is refused.
 
     Raises
     ------

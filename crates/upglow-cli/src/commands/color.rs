@@ -135,8 +135,10 @@ impl<'a> Shown<'a> {
             self.under(&name, &contract.on(Grid::FIT))
         }));
         let name = format!("{LAMP_PEAK_NM} nm lamp");
-        let lamp = Illuminant::line(&name, LAMP_PEAK_NM, LAMP_FWHM_NM);
-        lights.push(self.under(&name, &self.colorimetry.relit(&contract.observer, &lamp)));
+        let lamp = Illuminant::line(&name, LAMP_PEAK_NM, LAMP_FWHM_NM).ok();
+        lights.extend(
+            lamp.map(|lamp| self.under(&name, &self.colorimetry.relit(&contract.observer, &lamp))),
+        );
         lights
     }
 
