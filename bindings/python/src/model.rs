@@ -31,16 +31,23 @@ impl DyeSet {
         upglow::DyeSet::named(name).map(Self).map_err(|error| set_error(&error))
     }
 
-    /// The dyes in a folder of CSV files.
+    /// The dyes in a folder of CSV files; with `normalize`, curves are divided by their peaks.
     #[staticmethod]
-    fn from_folder(path: PathBuf) -> PyResult<Self> {
-        upglow::DyeSet::from_folder(&path).map(Self).map_err(|error| set_error(&error))
+    fn from_folder(path: PathBuf, normalize: bool) -> PyResult<Self> {
+        let set = if normalize {
+            upglow::DyeSet::from_folder_normalized(&path)
+        } else {
+            upglow::DyeSet::from_folder(&path)
+        };
+        set.map(Self).map_err(|error| set_error(&error))
     }
 
-    /// A ring of sampled dyes, in their order.
+    /// A ring of sampled dyes, in their order; with `normalize`, curves are divided by their peaks.
     #[staticmethod]
-    fn from_samples(name: &str, dyes: Vec<Sampled>) -> PyResult<Self> {
-        let dyes = dyes.into_iter().map(measured).collect::<PyResult<_>>()?;
+    fn from_samples(name: &str, dyes: Vec<Sampled>, normalize: bool) -> PyResult<Self> {
+        let scaled = |dye: MeasuredDye| if normalize { dye.normalized() } else { dye };
+        let dyes =
+            dyes.into_iter().map(|dye| measured(dye).map(scaled)).collect::<PyResult<_>>()?;
         upglow::DyeSet::new(name, dyes).map(Self).map_err(|error| set_error(&error))
     }
 
@@ -60,10 +67,6 @@ impl DyeSet {
 fn measured((name, nm, absorption, emission, quantum_yield): Sampled) -> PyResult<MeasuredDye> {
     let dye = MeasuredDye::from_samples(&name, &nm, &absorption, &emission)
         .map_err(|error| value_error(format_args!("dye {name}: {error}")))?;
-    if let Some(found) = quantum_yield.filter(|q| !(0.0..=1.0).contains(q)) {
-        let expected = "expected 0 to 1";
-        return Err(value_error(format_args!("dye {name}: quantum yield {found}, {expected}")));
-    }
     Ok(MeasuredDye { quantum_yield, provenance: "given in Python".to_owned(), ..dye })
 }
 

@@ -169,3 +169,29 @@ def test_dyes_come_from_a_folder_or_from_arrays(tmp_path) -> None:
         upglow.Dyes(set=[upglow.Dye(name="x", absorption=short, emission=short)]).names()
     with pytest.raises(FileNotFoundError):
         upglow.Dyes(set=tmp_path / "none").names()
+
+
+def test_dyes_are_normalized_on_request_and_have_names_and_yields_of_their_own() -> None:
+    nm = np.arange(300.0, 831.0, 5.0)
+
+    def bell(center: float) -> np.ndarray:
+        return np.exp(-(((nm - center) / 30.0) ** 2))
+
+    def ring(name: str = "a", scale: float = 1.0, shift: float = 40.0, quantum_yield=None) -> list:
+        curves = {"absorption": (nm, scale * bell(450)), "emission": (nm, bell(450 + shift))}
+        return [upglow.Dye(name=name, quantum_yield=quantum_yield, **curves)]
+
+    percent = upglow.Dyes(set=ring(scale=100.0), normalize=True)
+    cubes = [upglow.build(model=m, resolution=2) for m in (percent, upglow.Dyes(set=ring()))]
+    assert np.array_equal(cubes[0].dye_curves, cubes[1].dye_curves)
+    for dyes, message in (
+        (ring(scale=100.0), "dye a: the absorption peaks at 100, expected a peak in 0..1"),
+        (ring(shift=-40.0), "dye a: the emission's mean wavelength is 410"),
+        (ring(quantum_yield=1.5), "dye a: quantum yield 1.5, expected 0 to 1"),
+        (ring(name="ATTO_390"), '"ATTO_390" is a built-in dye whose absorption at 300 nm is'),
+        (2 * ring(), 'two dyes are called "a", expected different names'),
+    ):
+        with pytest.raises(ValueError, match=message):
+            upglow.Dyes(set=dyes).names()
+    with pytest.raises(ValueError, match="normalize with the set 'konig8', expected a folder or a list"):
+        upglow.Dyes(normalize=True).names()

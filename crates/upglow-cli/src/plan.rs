@@ -106,8 +106,9 @@ pub(crate) fn refuse_ignored<T: Choice + PartialEq>(
 
 fn model(args: &ModelArgs) -> Result<Model, Failure> {
     use ModelName::{Analytic, Dyes};
-    let options: [(&str, bool, &[ModelName]); 7] = [
+    let options: [(&str, bool, &[ModelName]); 8] = [
         ("--dyes", args.dyes.is_some(), &[Dyes]),
+        ("--normalize-dyes", args.normalize_dyes, &[Dyes]),
         ("--mixing", args.mixing.is_some(), &[Dyes]),
         ("--optical-density", args.optical_density.is_some(), &[Dyes]),
         ("--accounting", args.accounting.is_some(), &[Dyes, Analytic]),
@@ -124,7 +125,7 @@ fn model(args: &ModelArgs) -> Result<Model, Failure> {
 }
 
 fn dye_model(args: &ModelArgs) -> Result<DyeModel, Failure> {
-    let set = dye_set(args.dyes.as_deref().unwrap_or("konig8"))?;
+    let set = dye_set(args.dyes.as_deref().unwrap_or("konig8"), args.normalize_dyes)?;
     let defaults = DyeOptions::default();
     let options = DyeOptions {
         accounting: args.accounting.unwrap_or(defaults.accounting),
@@ -135,11 +136,20 @@ fn dye_model(args: &ModelArgs) -> Result<DyeModel, Failure> {
     DyeModel::new(set, options).map_err(model_failure)
 }
 
-fn dye_set(text: &str) -> Result<DyeSet, Failure> {
+fn dye_set(text: &str, normalize: bool) -> Result<DyeSet, Failure> {
     let path = Path::new(text);
     match DyeSet::named(text) {
         Err(DyeSetError::Unknown { .. }) if is_path(path) => {
-            DyeSet::from_folder(path).map_err(|error| folder_failure(path, error))
+            let set = if normalize {
+                DyeSet::from_folder_normalized(path)
+            } else {
+                DyeSet::from_folder(path)
+            };
+            set.map_err(|error| folder_failure(path, error))
+        }
+        Ok(_) if normalize => {
+            let message = format!("given with --dyes {text}, expected a folder of CSV files");
+            Err(Failure::option("--normalize-dyes", message))
         }
         named => named.map_err(|error| Failure::option("--dyes", error)),
     }

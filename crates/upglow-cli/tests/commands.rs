@@ -80,6 +80,52 @@ fn every_option_of_build_is_in_the_cube() {
 }
 
 #[test]
+fn what_is_read_from_a_file_never_takes_a_built_in_name() {
+    let folder = Folder::new();
+    folder.write("A.csv", curves("power", |_| "1".into()));
+    folder.write("CIE-1931-2deg.csv", eye());
+    folder.write("ring/ATTO_390.csv", dye(400));
+    folder.write("ring/green.csv", dye(480));
+    let options = "--illuminant A.csv --observer CIE-1931-2deg.csv --dyes ring";
+    folder.done(&format!("build --resolution 2 -o cube {options}"));
+    let found = folder.json("inspect cube");
+    let text = |field: &str| found.pointer(field).unwrap().as_str().unwrap().to_owned();
+    assert_eq!(text("/contract/illuminant"), "A.csv");
+    assert_eq!(text("/contract/observer"), "CIE-1931-2deg.csv");
+    let dyes = [0, 1].map(|i| text(&format!("/model/dyes/{i}/name")));
+    assert!(dyes.contains(&"ATTO_390.csv".into()) && dyes.contains(&"green".into()), "{dyes:?}");
+    let report = folder.json("color cube 0.5 0.5 0.5");
+    let lights = report["lights"].as_array().unwrap();
+    let names: Vec<_> = lights.iter().map(|light| light["name"].as_str().unwrap()).collect();
+    assert!(names.contains(&"A.csv") && names.contains(&"A"), "{names:?}");
+}
+
+#[test]
+fn dyes_in_other_units_are_normalized_on_request() {
+    let folder = Folder::new();
+    let percent = |text: String| {
+        let row = |line: &str| {
+            let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+            format!("{},{},{}\n", cells[0], 100.0 * cells[1], cells[2])
+        };
+        let (header, rows) = text.split_once('\n').unwrap();
+        format!("{header}\n{}", rows.lines().map(row).collect::<String>())
+    };
+    folder.write("ring/green.csv", dye(480));
+    folder.write("percent/green.csv", percent(dye(480)));
+    let refused = folder.run("build --resolution 2 --dyes percent -o cube").stderr;
+    let expected = "percent: dye green: the absorption peaks at 100, expected a peak in 0..1";
+    assert!(refused.contains(expected), "{refused}");
+    folder.done("build --resolution 2 --dyes percent --normalize-dyes -o cube");
+    folder.done("build --resolution 2 --dyes ring --normalize-dyes -o other");
+    let nodes = |cube: &str| {
+        folder.done(&format!("export {cube} {cube}.csv"));
+        folder.read(&format!("{cube}.csv"))
+    };
+    assert_eq!(nodes("cube"), nodes("other"));
+}
+
+#[test]
 fn unpublished_quantum_yields_are_named_in_a_warning() {
     let folder = Folder::new();
     let run = folder.run("build --resolution 2 --quantum-yield measured -o cube");

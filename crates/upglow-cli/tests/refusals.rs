@@ -103,6 +103,20 @@ fn invalid_dyes() {
     folder.write("ring/readme.txt", "nothing");
     let line = folder.refused(1, "build --dyes ring -o cube");
     assert!(line.starts_with("ring: 0 dyes, expected"), "{line}");
+    let header = "wavelength_nm,absorption,emission\n";
+    let exchanged = |line: &str| {
+        let cells: Vec<&str> = line.split(',').collect();
+        format!("{},{},{}\n", cells[0], cells[2], cells[1])
+    };
+    let rows: String = good.lines().skip(1).map(exchanged).collect();
+    folder.write("backward/a.csv", format!("{header}{rows}"));
+    let line = folder.refused(1, "build --dyes backward -o cube");
+    let expected =
+        "backward: dye a: the emission's mean wavelength is 500.0 nm, expected at least that of";
+    assert!(line.starts_with(expected), "{line}");
+    let line = folder.refused(2, "build --normalize-dyes -o cube");
+    let expected = "given with --dyes konig8, expected a folder of CSV files";
+    assert_eq!(line, format!("--normalize-dyes: {expected}"));
     let line = folder.refused(1, "build --dyes no/ring -o cube");
     assert_eq!(line, "no/ring: no such file or folder, expected a folder of CSV files");
 }

@@ -1,8 +1,9 @@
-//! Algorithm 1 against computed vectors, where the folder that holds them is at hand.
+//! Algorithm 1 against computed vectors, and measured dyes, where the folder that holds them is at hand.
 
 use std::path::PathBuf;
 
-use upglow::Features;
+use upglow::{DyeSet, Features};
+use upglow_color::MeasuredDye;
 
 /// The vectors are printed with six digits for the features they start from, so that is how well
 /// they determine what follows; coefficients near z² times the curvature lose more.
@@ -37,4 +38,28 @@ fn algorithm_1_gives_the_reference_coefficients_and_spectra() {
         rows += 1;
     }
     assert!(rows >= 100, "{rows}");
+}
+
+#[test]
+fn every_measured_dye_is_accepted_and_none_takes_a_built_in_name_with_other_numbers() {
+    let folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/dyes"));
+    if !folder.exists() {
+        eprintln!(
+            "skipped: every_measured_dye_is_accepted_and_none_takes_a_built_in_name_with_other_numbers \
+             (no ../shared/data/dyes)"
+        );
+        return;
+    }
+    let set = DyeSet::from_folder(&folder).unwrap();
+    assert!(set.dyes().len() >= 28, "{}", set.dyes().len());
+    for dye in set.dyes() {
+        assert_eq!(dye.check_name(), Ok(()));
+        // The built-in tables are coarser, so their dyes are others.
+        let stem = dye.provenance.strip_suffix(".csv").unwrap();
+        let is_built_in = MeasuredDye::named(stem).is_some();
+        assert_eq!(dye.name, if is_built_in { &dye.provenance } else { stem });
+    }
+    // Curves there are divided by their peaks, up to the rounding of three digits.
+    let normalized = DyeSet::from_folder_normalized(&folder).unwrap();
+    assert!(normalized.dyes().iter().all(|dye| dye.absorption.peak() == 1.0));
 }

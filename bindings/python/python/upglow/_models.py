@@ -27,6 +27,9 @@ class Dye:
     quantum_yield
         Photons emitted per photon absorbed, 0 to 1; ``None`` if it was not measured.
 
+    A built-in name with other numbers is refused, and so is a dye whose mean emission is at a shorter
+    wavelength than its mean absorption.
+
     Wavelengths ascend from 300 to 830 nm in steps of at most 5 nm. NaN at either end of a curve
     means that it was not measured there, and counts as zero.
     """
@@ -64,6 +67,9 @@ class Dyes:
     optical_density
         Peak optical density A > 0 of the dyes at full concentration: the absorptance is then
         1 - 10^(-A·a), a being the measured curve. ``None``: a thin solution, of absorptance a.
+    normalize
+        Divide the absorption and the emission of each dye by their peaks, for curves in other units
+        than fractions. Only for a folder or a list.
     """
 
     set: str | os.PathLike[str] | Sequence[Dye] = "konig8"
@@ -71,6 +77,7 @@ class Dyes:
     mixing: str = "pooled"
     quantum_yield: float | str = 1.0
     optical_density: float | None = None
+    normalize: bool = False
 
     @staticmethod
     def sets() -> list[str]:
@@ -83,11 +90,14 @@ class Dyes:
 
     def _native_set(self) -> _upglow.DyeSet:
         if not isinstance(self.set, (str, os.PathLike)):
-            return _upglow.DyeSet.from_samples("custom", [dye._samples() for dye in self.set])
+            dyes = [dye._samples() for dye in self.set]
+            return _upglow.DyeSet.from_samples("custom", dyes, self.normalize)
         word = os.fspath(self.set)
         if word in _upglow.DyeSet.names() or not is_path(word):
+            if self.normalize:
+                raise ValueError(f"normalize with the set {word!r}, expected a folder or a list")
             return _upglow.DyeSet.named(word)
-        return _upglow.DyeSet.from_folder(word)
+        return _upglow.DyeSet.from_folder(word, self.normalize)
 
     def _native(self) -> _upglow.Model:
         rules = self.accounting, self.mixing, self.quantum_yield, self.optical_density

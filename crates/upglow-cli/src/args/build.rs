@@ -53,6 +53,10 @@ pub(crate) struct ModelArgs {
     /// `wavelength_nm,absorption,emission` [default: konig8]
     #[arg(long, value_name = "NAME|FOLDER")]
     pub(crate) dyes: Option<String>,
+    /// Divide the absorption and the emission of each dye in the folder by their peaks, for curves in
+    /// other units than fractions
+    #[arg(long)]
+    pub(crate) normalize_dyes: bool,
     /// What is conserved when absorbed light is re-emitted: energy, or the number of photons
     /// [default: energy]
     #[arg(long, value_name = "NAME", value_parser = word::<Accounting>())]

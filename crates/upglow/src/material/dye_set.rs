@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use upglow_color::{
-    Grid, MeasuredDye, Observer, SampleRules, Spectrum, SpectrumCsvError, Xyz, read_columns,
+    Grid, MeasuredDye, NameError, Observer, SampleRules, SamplesError, Spectrum, SpectrumCsvError,
+    Xyz, read_columns,
 };
 
 /// A ring of measured dyes: neighbors can be mixed, the last is beside the first.
@@ -55,6 +56,58 @@ pub enum DyeSetError {
         /// What was found, and what is expected.
         problem: String,
     },
+    /// The emission cannot be calculated with.
+    #[error("dye {dye}: {cause}")]
+    Emission {
+        /// The dye.
+        dye: String,
+        /// What is wrong with it.
+        cause: SamplesError,
+    },
+    /// A quantum yield is not in 0..=1.
+    #[error("dye {dye}: quantum yield {found}, expected 0 to 1")]
+    QuantumYield {
+        /// The dye.
+        dye: String,
+        /// The number given.
+        found: f64,
+    },
+    /// A dye emits at shorter wavelengths than it absorbs, against the law of Stokes.
+    #[error(
+        "dye {dye}: the emission's mean wavelength is {emission_nm:.1} nm, expected at least that of the \
+         absorption, {absorption_nm:.1} nm; are the columns exchanged?"
+    )]
+    AntiStokes {
+        /// The dye.
+        dye: String,
+        /// Mean wavelength of the absorption, nm.
+        absorption_nm: f64,
+        /// Mean wavelength of the emission, nm.
+        emission_nm: f64,
+    },
+    /// Two dyes have one name.
+    #[error("two dyes are called {name:?}, expected different names")]
+    Twins {
+        /// The name.
+        name: String,
+    },
+    /// A dye or the set cannot have its name.
+    #[error(transparent)]
+    Name(#[from] NameError),
+    /// The set has the name of a built-in set, but other dyes.
+    #[error(
+        "{name:?} is a built-in dye set of {}, found {}: expected these dyes in this order, or another name",
+        expected.join(", "),
+        found.join(", ")
+    )]
+    Set {
+        /// The set's name.
+        name: String,
+        /// Names of the built-in dyes, in ring order.
+        expected: Vec<String>,
+        /// Names of the dyes given.
+        found: Vec<String>,
+    },
     /// The folder's list of quantum yields lacks a column, or holds one that is not in 0..=1.
     #[error("{}: {problem}", path.display())]
     List {
@@ -76,16 +129,20 @@ impl DyeSet {
     ///
     /// # Errors
     ///
-    /// [`DyeSetError`] if there is no dye or more than 255, or a curve is negative somewhere or
-    /// peaks outside 0..1.
+    /// [`DyeSetError`] if there is no dye or more than 255; if an absorption is negative somewhere or
+    /// peaks outside 0..1; if an emission is negative somewhere or peaks outside 1e-30 to 1e30, or its
+    /// mean wavelength is below that of the absorption; if a quantum yield is not in 0..=1; if two dyes
+    /// have one name; or if a set or dye has a built-in name and not the built-in dyes or numbers.
     pub fn new(name: &str, dyes: Vec<MeasuredDye>) -> Result<Self, DyeSetError> {
         if dyes.is_empty() || dyes.len() > MOST_DYES {
             return Err(DyeSetError::Count { found: dyes.len() });
         }
-        for dye in &dyes {
-            check_curve(dye, "absorption", &dye.absorption, 1.0)?;
-            check_curve(dye, "emission", &dye.emission, f64::INFINITY)?;
+        dyes.iter().try_for_each(check_dye)?;
+        let twin = (1..dyes.len()).find(|&i| dyes[..i].iter().any(|d| d.name == dyes[i].name));
+        if let Some(i) = twin {
+            return Err(DyeSetError::Twins { name: dyes[i].name.clone() });
         }
+        check_set_name(name, &dyes)?;
         Ok(Self { name: name.into(), dyes })
     }
 
@@ -104,20 +161,39 @@ impl DyeSet {
     /// sorted by emission hue.
     ///
     /// Absorption is a fraction (1 is black at that wavelength); emission is relative. A file
-    /// `PROVENANCE.csv` beside them, with columns `file` and `quantum_yield`, gives the yields.
+    /// `PROVENANCE.csv` beside them, with columns `file` and `quantum_yield`, gives the yields. A dye is
+    /// named after its file without `.csv`; where that is the name of a built-in dye with other numbers,
+    /// with `.csv`.
     ///
     /// # Errors
     ///
     /// [`DyeSetError`] names the file, the line and what was expected there.
     pub fn from_folder(folder: &Path) -> Result<Self, DyeSetError> {
+        Self::from_folder_with(folder, |dye| dye)
+    }
+
+    /// The same with every curve divided by its peak, as [`MeasuredDye::normalized`] does. An absorption
+    /// that was given in other units, with a peak above 1, becomes a fraction.
+    ///
+    /// # Errors
+    ///
+    /// As [`DyeSet::from_folder`].
+    pub fn from_folder_normalized(folder: &Path) -> Result<Self, DyeSetError> {
+        Self::from_folder_with(folder, MeasuredDye::normalized)
+    }
+
+    fn from_folder_with(
+        folder: &Path,
+        scale: impl Fn(MeasuredDye) -> MeasuredDye,
+    ) -> Result<Self, DyeSetError> {
         let mut files = csv_files(folder)?;
         let list = files.iter().position(|f| f.file_name().is_some_and(|n| n == PROVENANCE));
         let yields = match list {
             Some(index) => read_yields(&files.remove(index))?,
             None => Vec::new(),
         };
-        let mut dyes =
-            files.iter().map(|file| read_dye(file, &yields)).collect::<Result<Vec<_>, _>>()?;
+        let read = |file: &PathBuf| Ok(scale(read_dye(file, &yields)?).named_after(file));
+        let mut dyes = files.iter().map(read).collect::<Result<Vec<_>, DyeSetError>>()?;
         let matching = Observer::cie_1931_2deg().on(Grid::FINE);
         let hue = |dye: &MeasuredDye| emission_hue(dye, &matching);
         dyes.sort_by(|a, b| hue(b).total_cmp(&hue(a)));
@@ -138,6 +214,44 @@ impl DyeSet {
 
 const PROVENANCE: &str = "PROVENANCE.csv";
 
+fn check_dye(dye: &MeasuredDye) -> Result<(), DyeSetError> {
+    let name = || dye.name.clone();
+    check_curve(dye, "absorption", &dye.absorption, 1.0)?;
+    check_curve(dye, "emission", &dye.emission, f64::INFINITY)?;
+    dye.check_emission_peak().map_err(|cause| DyeSetError::Emission { dye: name(), cause })?;
+    if let Some(found) = dye.quantum_yield.filter(|q| !(0.0..=1.0).contains(q)) {
+        return Err(DyeSetError::QuantumYield { dye: name(), found });
+    }
+    // Means, not peaks: curves with several maxima, such as that of mKeima, have no one peak.
+    let [absorption_nm, emission_nm] = [mean_nm(&dye.absorption), mean_nm(&dye.emission)];
+    if emission_nm < absorption_nm {
+        return Err(DyeSetError::AntiStokes { dye: name(), absorption_nm, emission_nm });
+    }
+    Ok(dye.check_name()?)
+}
+
+/// Mean wavelength of a curve with a positive sample, nm.
+fn mean_nm(curve: &Spectrum) -> f64 {
+    let peak = curve.peak();
+    let samples = curve.grid().wavelengths_nm().zip(curve.values());
+    let (moment, sum) = samples
+        .fold((0.0, 0.0), |(moment, sum), (nm, v)| (moment + nm * (v / peak), sum + v / peak));
+    moment / sum
+}
+
+/// Checks that a built-in name comes with the built-in dyes in their order. Their numbers are checked
+/// with each dye.
+fn check_set_name(name: &str, dyes: &[MeasuredDye]) -> Result<(), DyeSetError> {
+    NameError::check_text(name)?;
+    let names = |dyes: &[MeasuredDye]| dyes.iter().map(|d| d.name.clone()).collect::<Vec<_>>();
+    match MeasuredDye::set(name).map(|(_, known)| names(&known)) {
+        Some(expected) if expected != names(dyes) => {
+            Err(DyeSetError::Set { name: name.into(), expected, found: names(dyes) })
+        }
+        _ => Ok(()),
+    }
+}
+
 fn check_curve(
     dye: &MeasuredDye,
     curve: &'static str,
@@ -145,10 +259,13 @@ fn check_curve(
     limit: f64,
 ) -> Result<(), DyeSetError> {
     let mut sampled = samples.grid().wavelengths_nm().zip(samples.values());
-    let peak = samples.values().iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let peak = samples.peak();
     let problem = match sampled.find(|(_, sample)| **sample < 0.0) {
         Some((nm, found)) => format!("is {found} at {nm} nm, expected 0 or more"),
         None if peak > 0.0 && peak <= limit => return Ok(()),
+        None if peak > limit => {
+            format!("peaks at {peak}, expected a peak in 0..1, 0 excluded, or a normalized curve")
+        }
         None => format!("peaks at {peak}, expected a peak in 0..1, 0 excluded"),
     };
     Err(DyeSetError::Curve { dye: dye.name.clone(), curve, problem })
@@ -173,8 +290,7 @@ fn read_dye(path: &Path, yields: &[(String, f64)]) -> Result<MeasuredDye, DyeSet
         .map_err(|cause| DyeSetError::Csv { path: path.into(), cause })?;
     let file = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
     let quantum_yield = yields.iter().find(|(listed, _)| *listed == file).map(|(_, q)| *q);
-    let name = path.file_stem().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
-    Ok(MeasuredDye { name, absorption, emission, quantum_yield, provenance: file })
+    Ok(MeasuredDye { name: String::new(), absorption, emission, quantum_yield, provenance: file })
 }
 
 /// File and quantum yield of each line of the list that has a yield.
@@ -255,7 +371,7 @@ mod tests {
             let value = |nm: usize| if nm == peak { "1" } else { "0" };
             let rows: String = (300..=830)
                 .step_by(5)
-                .map(|nm| format!("{nm},{},{}\n", value(nm), value(nm + 10)))
+                .map(|nm| format!("{nm},{},{}\n", value(nm), value(nm - 10)))
                 .collect();
             let text = format!("wavelength_nm,absorption,emission\n{rows}");
             std::fs::write(folder.path().join(name), text).unwrap();
