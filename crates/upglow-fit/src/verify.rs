@@ -330,9 +330,16 @@ mod tests {
     }
 
     #[test]
-    fn huge_numbers_break_laws_and_cause_no_panic() {
-        let found = broken(COLORED, |node| node.reflectance = [3e38, 3e38, 3e38]);
-        assert_eq!([0, 1, 2].map(|i| found[i].0), ["energy", "bounds", "slope"]);
+    fn the_greatest_numbers_break_no_law_of_light_and_cause_no_panic() {
+        let found = broken(COLORED, |node| node.reflectance = [1e18, 1e10, 1e3]);
+        assert_eq!(found[0].0, "slope");
+        for [edge_nm, level, slope_per_nm] in [[1e19, 0.0, 0.0], [0.0, 1e11, 0.0], [0.0, 0.0, 1e4]]
+        {
+            let reflectance = [edge_nm, level, slope_per_nm];
+            let nodes = vec![Node { reflectance, ..Node::default() }; 8];
+            let fit = FitRecord::default();
+            assert!(Cube::new(Contract::default(), dyes(), fit, 2, nodes).is_err());
+        }
     }
 
     #[test]

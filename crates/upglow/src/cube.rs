@@ -1,14 +1,18 @@
 //! A cube of materials: one for each node of a grid over RGB.
 
+use std::ops::RangeInclusive;
+
 use upglow_color::rounding::to_single;
-use upglow_color::{Contract, LinearRgb};
+use upglow_color::{Contract, LinearRgb, NameError};
 
 pub(crate) mod coefficient_table;
 pub(crate) mod error;
 pub(crate) mod file;
 mod header;
 pub(crate) mod interpolation;
+mod plain_json;
 
+use crate::material::analytic_model::AnalyticModel;
 use crate::material::edge::Edge;
 use crate::material::mixture::Mixture;
 use crate::material::model::Model;
@@ -105,7 +109,7 @@ impl LookupError {
 }
 
 /// Why nodes describe no cube.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CubeError {
     /// The resolution is out of range.
@@ -122,6 +126,9 @@ pub enum CubeError {
         /// Nodes needed.
         expected: usize,
     },
+    /// The record of the fit has an impossible number or text.
+    #[error(transparent)]
+    Fit(#[from] FitRecordError),
     /// A node's numbers describe no material of the model.
     #[error("node [{}][{}][{}] (blue, green, red): {cause}", .node[0], .node[1], .node[2])]
     Node {
@@ -130,6 +137,21 @@ pub enum CubeError {
         /// What is wrong with it.
         cause: NodeError,
     },
+}
+
+/// Why a record of a fit is not accepted.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FitRecordError {
+    /// The slope limit is not a positive number.
+    #[error("slope limit {found}, expected > 0 per nm, or none")]
+    SlopeLimit {
+        /// The limit given, 1/nm.
+        found: f64,
+    },
+    /// The metric or the method is not one line of text.
+    #[error("metric or method: {0}")]
+    Text(Box<NameError>),
 }
 
 /// Why a node's numbers describe no material.
@@ -152,7 +174,8 @@ impl Cube {
     ///
     /// # Errors
     ///
-    /// [`CubeError`] if the count is wrong or a node is not a material of the model.
+    /// [`CubeError`] if the count is wrong, a node is not a material of the model, or the record of the
+    /// fit has a slope limit that is not a positive number.
     pub fn new(
         contract: Contract,
         model: Model,
@@ -168,6 +191,7 @@ impl Cube {
         if nodes.len() != expected {
             return Err(CubeError::Count { found: nodes.len(), expected });
         }
+        fit.check()?;
         let cube = Self { contract, model, fit, resolution, nodes };
         for (index, node) in cube.nodes.iter().enumerate() {
             node.check(&cube.model)
@@ -248,6 +272,28 @@ impl Cube {
     }
 }
 
+impl FitRecord {
+    fn check(&self) -> Result<(), FitRecordError> {
+        if let Some(found) = self.slope_max_per_nm.filter(|s| !(s.is_finite() && *s > 0.0)) {
+            return Err(FitRecordError::SlopeLimit { found });
+        }
+        let texts = [&self.metric, &self.method];
+        texts
+            .into_iter()
+            .try_for_each(|t| NameError::check_text(t))
+            .map_err(|error| FitRecordError::Text(error.into()))
+    }
+}
+
+/// Greatest sizes of the wavelength (nm), level and slope (1/nm) of a node's reflectance. Within them
+/// the coefficients of the parabola, its square and the square of its discriminant are finite in
+/// double precision. White and black have a level of ±1e9.
+const GREATEST_REFLECTANCE: [(&str, f32, &str); 3] = [
+    ("the edge", 1e18, "-1e18 to 1e18 nm"),
+    ("the level", 1e10, "-1e10 to 1e10"),
+    ("the slope", 1e3, "-1e3 to 1e3 per nm"),
+];
+
 impl Node {
     /// Stores a material in single precision.
     ///
@@ -297,31 +343,58 @@ impl Node {
         Material { reflectance: self.edge().to_sigmoid(), fluorescence }
     }
 
-    /// Checks that its numbers describe a material of a model.
+    /// Checks that its numbers describe a material of a model: every number is in its range, also where
+    /// the concentration is 0 and the others have no effect.
     ///
     /// # Errors
     ///
     /// [`NodeError`] names the first number that does not.
     pub fn check(&self, model: &Model) -> Result<(), NodeError> {
-        let fault = |what, found, expected| Err(NodeError { what, found, expected });
-        let fraction = |what, found: f32| match found {
-            0.0..=1.0 => Ok(()),
-            _ => fault(what, found, "0 to 1"),
-        };
-        let numbers = self.reflectance.iter().chain(&self.fluorescence).chain([&self.de2000]);
-        if let Some(&found) = numbers.into_iter().find(|v| !v.is_finite()) {
-            return fault("a number", found, "a finite one");
+        for (found, (what, most, expected)) in
+            self.reflectance.into_iter().zip(GREATEST_REFLECTANCE)
+        {
+            check_range(what, found, -most..=most, expected)?;
         }
+        check_range("the CIEDE2000", self.de2000, 0.0..=f32::MAX, "a finite number of 0 or more")?;
         let [first, second, third] = self.fluorescence;
+        let fraction = |what, found| check_range(what, found, 0.0..=1.0, "0 to 1");
+        let unused = |what, found| check_range(what, found, 0.0..=0.0, "0, it has no meaning here");
+        let is_dark = third == 0.0;
         match model {
-            Model::Reflectance => Ok(()),
-            Model::Dyes(model) if usize::from(self.dye) >= model.curves().len() => {
-                fault("the dye", self.dye.into(), "a dye of the ring")
+            Model::Reflectance => {
+                unused("the dye", self.dye.into())?;
+                self.fluorescence.into_iter().try_for_each(|v| unused("the fluorescence", v))
             }
-            Model::Dyes(_) => {
-                fraction("the weight", first).and_then(|()| fraction("the concentration", second))
+            Model::Dyes(model) => {
+                if usize::from(self.dye) >= model.curves().len() {
+                    let (what, found) = ("the dye", self.dye.into());
+                    return Err(NodeError { what, found, expected: "a dye of the ring" });
+                }
+                fraction("the weight", first)?;
+                fraction("the concentration", second)?;
+                unused("the third number of the fluorescence", third)
             }
-            Model::Analytic(_) => fraction("the concentration", third),
+            Model::Analytic(_) if is_dark && [first, second] == [0.0; 2] => {
+                unused("the dye", self.dye.into())
+            }
+            Model::Analytic(_) => {
+                unused("the dye", self.dye.into())?;
+                fraction("the concentration", third)?;
+                let within = |[least, most]: [f64; 2]| to_single(least)..=to_single(most);
+                let peaks = within(AnalyticModel::EMISSION_PEAKS_NM);
+                check_range("the emission peak", first, peaks, "400 to 710 nm")?;
+                let shifts = within(AnalyticModel::STOKES_SHIFTS_NM);
+                check_range("the Stokes shift", second, shifts, "10 to 120 nm")
+            }
         }
     }
+}
+
+fn check_range(
+    what: &'static str,
+    found: f32,
+    range: RangeInclusive<f32>,
+    expected: &'static str,
+) -> Result<(), NodeError> {
+    if range.contains(&found) { Ok(()) } else { Err(NodeError { what, found, expected }) }
 }

@@ -46,7 +46,7 @@ pub use bispectral::{Bispectral, Draw, Sample};
 pub use cube::coefficient_table::{CoefficientTable, CoefficientTableError};
 pub use cube::error::{CubeFileError, ReadCubeError};
 pub use cube::interpolation::Interpolation;
-pub use cube::{Cube, CubeError, FitRecord, LookupError, Node, NodeError};
+pub use cube::{Cube, CubeError, FitRecord, FitRecordError, LookupError, Node, NodeError};
 pub use material::analytic_model::AnalyticModel;
 pub use material::dye_model::{DyeCurves, DyeModel, DyeOptions, QuantumYield};
 pub use material::dye_set::{DyeSet, DyeSetError};

@@ -265,3 +265,34 @@ impl<'c> Inspector<'c> {
 fn difference([a, b]: [Xyz; 2]) -> f64 {
     greatest((a - b).0.into_iter().map(f64::abs)).0
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use upglow::{FitRecord, Model, Node};
+    use upglow_color::Contract;
+
+    /// No cube's numbers cause this, so it is put into the spectra.
+    #[test]
+    fn light_that_was_not_there_breaks_the_laws_of_energy_and_bounds() {
+        let nodes = vec![Node::default(); 8];
+        let (contract, fit) = (Contract::default(), FitRecord::default());
+        let cube = Cube::new(contract, Model::Reflectance, fit, 2, nodes).unwrap();
+        let inspector = Inspector::new(&cube, &VerifyOptions { points: 0, ..Default::default() });
+        let subject = Subject::Node(0);
+        let mixture = inspector.mixture(subject);
+        let violations = |value: Option<f64>| {
+            let (mut spectra, mut findings) = (Spectra::new(), Findings::default());
+            inspector.sampler.sample(mixture.parts(), &mut spectra);
+            if let Some(value) = value {
+                spectra.reflected[100] = value;
+            }
+            inspector.see_light(subject, &spectra, &mut findings);
+            [Law::Energy, Law::Bounds].map(|law| findings.laws[law as usize].violations)
+        };
+        assert_eq!(violations(None), [0, 0]);
+        assert_eq!(violations(Some(1.5)), [1, 1]);
+        assert_eq!(violations(Some(-0.5)), [0, 1]);
+        assert_eq!(violations(Some(f64::NAN)), [1, 1]);
+    }
+}

@@ -39,6 +39,23 @@ pub enum ReadCubeError {
     /// The header has no entry `upglow`.
     #[error("no `upglow` entry in the header, expected a cube made by upglow")]
     NotACube,
+    /// The container has another metadata entry.
+    #[error("metadata entry {found:?}, expected `upglow` alone")]
+    Metadata {
+        /// Name of the entry.
+        found: String,
+    },
+    /// The container's header is not plain JSON.
+    #[error("safetensors header: {0}")]
+    ContainerHeader(serde_json::Error),
+    /// There is a tensor that a cube of this model and version does not have.
+    #[error("tensor {found:?}, expected only {}", expected.join(", "))]
+    Surplus {
+        /// Name of the tensor.
+        found: String,
+        /// Names of the tensors that there may be.
+        expected: Vec<&'static str>,
+    },
     /// The file is of another version.
     #[error("format version {found}, expected 1 to {newest}")]
     Version {

@@ -13,6 +13,7 @@ use upglow_color::Grid;
 use crate::aside::Aside;
 use crate::cube::error::{CubeFileError, ReadCubeError};
 use crate::cube::header::{ENTRY, Header, StoredCurves, holds_observer};
+use crate::cube::plain_json::PlainJson;
 use crate::cube::{Cube, CubeError, Node};
 use crate::material::model::Model;
 
@@ -160,9 +161,11 @@ impl Cube {
     ///
     /// [`ReadCubeError`] if the content is not a cube; no content panics.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, ReadCubeError> {
-        let (_, metadata) = SafeTensors::read_metadata(bytes).map_err(ReadCubeError::Container)?;
-        let json = metadata.metadata().as_ref().and_then(|entries| entries.get(ENTRY));
-        let json = json.ok_or(ReadCubeError::NotACube)?;
+        let (length, metadata) =
+            SafeTensors::read_metadata(bytes).map_err(ReadCubeError::Container)?;
+        let entries = metadata.metadata().as_ref().ok_or(ReadCubeError::NotACube)?;
+        let json = entries.get(ENTRY).ok_or(ReadCubeError::NotACube)?;
+        check_container(&bytes[size_of::<u64>()..][..length], entries)?;
         let header = Header::parse(json)?;
         let file = SafeTensors::deserialize(bytes).map_err(ReadCubeError::Container)?;
         check_sum(json, &file)?;
@@ -171,6 +174,7 @@ impl Cube {
         if !(least..=most).contains(&n) {
             return Err(CubeError::Resolution { found: n }.into());
         }
+        check_tensors(&file, &header)?;
         let curves = read_curves(&file, &header)?;
         let contract = header.contract.to_contract(curves.illuminant, curves.observer)?;
         let model = header.model.to_model(curves.dyes)?;
@@ -206,6 +210,58 @@ fn check_sum(header: &str, file: &SafeTensors<'_>) -> Result<(), ReadCubeError> 
     }
     let digits = |sum: &[u8]| sum[..4].iter().map(|b| format!("{b:02x}")).collect();
     Err(ReadCubeError::Checksum { found: digits(&computed), expected: digits(stored) })
+}
+
+/// Checks what the checksum does not cover: the container's own JSON, and its metadata entries.
+fn check_container(json: &[u8], entries: &HashMap<String, String>) -> Result<(), ReadCubeError> {
+    // The least name, so that the message is always the same one.
+    if let Some(found) = entries.keys().filter(|name| *name != ENTRY).min() {
+        return Err(ReadCubeError::Metadata { found: found.clone() });
+    }
+    let plain = serde_json::from_slice::<PlainJson<false>>(json);
+    plain.map(|_| ()).map_err(ReadCubeError::ContainerHeader)
+}
+
+/// Name, type and shape of every tensor of a cube with this header, except the checksum.
+fn layout(header: &Header) -> Vec<(&'static str, Dtype, Vec<usize>)> {
+    let (n, fine) = (header.resolution, Grid::FINE.len());
+    let mut layout = vec![
+        (REFLECTANCE, Dtype::F32, vec![n, n, n, 3]),
+        (DE2000, Dtype::F32, vec![n, n, n]),
+        (ILLUMINANT, Dtype::F64, vec![fine]),
+    ];
+    if header.holds_observer() {
+        layout.push((OBSERVER, Dtype::F64, vec![3, fine]));
+    }
+    if header.model.is_fluorescent() {
+        layout.push((FLUORESCENCE, Dtype::F32, vec![n, n, n, 3]));
+    }
+    // A model without dyes is refused with its set.
+    match header.model.dye_count() {
+        0 => {}
+        dyes => {
+            layout.push((DYE, Dtype::U8, vec![n, n, n]));
+            layout.push((DYE_CURVES, Dtype::F64, vec![dyes, 2, fine]));
+        }
+    }
+    layout
+}
+
+/// Checks that the file has the tensors of its model and version, no others, and lists them.
+fn check_tensors(file: &SafeTensors<'_>, header: &Header) -> Result<(), ReadCubeError> {
+    let layout = layout(header);
+    for (name, dtype, shape) in &layout {
+        tensor(file, name, *dtype, shape)?;
+    }
+    let mut expected: Vec<_> = layout.into_iter().map(|(name, ..)| name).collect();
+    expected.sort_unstable();
+    let is_surplus = |name: &&str| *name != CHECKSUM && !expected.contains(name);
+    if let Some(found) = file.names().into_iter().filter(is_surplus).min() {
+        return Err(ReadCubeError::Surplus { found: found.into(), expected });
+    }
+    let mut listed: Vec<_> = header.tensors.iter().map(String::as_str).collect();
+    listed.sort_unstable();
+    ReadCubeError::check("tensors", &listed, &expected)
 }
 
 /// The bytes of one tensor, of the type and shape expected.

@@ -1,11 +1,14 @@
 //! The JSON header of a cube's file.
 
+use std::path::Path;
+
 use serde::{Deserialize, Serialize};
 use upglow_color::{
     Adaptation, Contract, Grid, Illuminant, MeasuredDye, Observer, RgbSpace, Spectrum,
 };
 
 use crate::cube::error::ReadCubeError;
+use crate::cube::plain_json::PlainJson;
 use crate::cube::{Cube, FitRecord};
 use crate::material::analytic_model::AnalyticModel;
 use crate::material::dye_model::{DyeModel, DyeOptions};
@@ -21,6 +24,8 @@ const FORMAT_VERSIONS: [u32; 2] = [1, WITH_OBSERVER];
 
 /// The first version that holds color-matching functions; before, they are CIE 1931 2°.
 const WITH_OBSERVER: u32 = 2;
+
+const FORMAT: &str = "upglow cube";
 
 const NODE_AXES: &str = "[blue][green][red]; node i of n is i / (n - 1), linear";
 
@@ -54,7 +59,8 @@ pub(crate) struct ContractHeader {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields)]
 pub(crate) enum ModelHeader {
-    Reflectance,
+    // With braces, so that unknown fields are refused.
+    Reflectance {},
     Dyes {
         set: String,
         dyes: Vec<DyeHeader>,
@@ -101,7 +107,7 @@ const fn grid_numbers(grid: Grid) -> [u32; 3] {
 impl Header {
     pub(crate) fn of(cube: &Cube, tensors: Vec<String>) -> Self {
         Self {
-            format: "upglow cube".into(),
+            format: FORMAT.into(),
             format_version: if holds_observer(cube.contract()) { WITH_OBSERVER } else { 1 },
             upglow_version: env!("CARGO_PKG_VERSION").into(),
             resolution: cube.resolution(),
@@ -124,7 +130,11 @@ impl Header {
             let (found, newest) = (version.format_version, WITH_OBSERVER);
             return Err(ReadCubeError::Version { found, newest });
         }
-        serde_json::from_str(json).map_err(ReadCubeError::Header)
+        serde_json::from_str::<PlainJson<true>>(json).map_err(ReadCubeError::Header)?;
+        let header: Self = serde_json::from_str(json).map_err(ReadCubeError::Header)?;
+        ReadCubeError::check("format", header.format.as_str(), FORMAT)?;
+        ReadCubeError::check("axes", header.axes.as_str(), NODE_AXES)?;
+        Ok(header)
     }
 
     /// Whether the file holds color-matching functions.
@@ -184,7 +194,7 @@ impl ContractHeader {
 impl ModelHeader {
     fn of(model: &Model) -> Self {
         match model {
-            Model::Reflectance => Self::Reflectance,
+            Model::Reflectance => Self::Reflectance {},
             Model::Dyes(model) => Self::of_dyes(model),
             Model::Analytic(model) => Self::Analytic {
                 absorption_fwhm_nm: model.absorption_fwhm_nm(),
@@ -220,9 +230,14 @@ impl ModelHeader {
         }
     }
 
+    /// Whether nodes have numbers of fluorescence.
+    pub(crate) fn is_fluorescent(&self) -> bool {
+        !matches!(self, Self::Reflectance {})
+    }
+
     pub(crate) fn to_model(&self, curves: Vec<[Vec<f64>; 2]>) -> Result<Model, ReadCubeError> {
         match self {
-            Self::Reflectance => Ok(Model::Reflectance),
+            Self::Reflectance {} => Ok(Model::Reflectance),
             Self::Dyes { set, dyes, mixing, accounting, quantum_yield, optical_density } => {
                 let dyes = dyes.iter().zip(curves).map(|(dye, curves)| dye.to_dye(curves));
                 let dyes = dyes.collect::<Result<Vec<_>, _>>()?;
@@ -251,13 +266,17 @@ impl DyeHeader {
         let [absorption, emission] = curves.map(|values| {
             Spectrum::new(Grid::FINE, values).map_err(ReadCubeError::value("dye curves"))
         });
-        Ok(MeasuredDye {
+        let dye = MeasuredDye {
             name: self.name.clone(),
             absorption: absorption?,
             emission: emission?,
             quantum_yield: self.measured_quantum_yield,
             provenance: self.provenance.clone(),
-        })
+        };
+        // A dye from a folder states its file. Earlier versions called it by the stem even where that is
+        // a built-in dye with other numbers.
+        let is_named_by_stem = self.provenance.strip_suffix(".csv") == Some(self.name.as_str());
+        Ok(if is_named_by_stem { dye.named_after(Path::new(&self.provenance)) } else { dye })
     }
 }
 
