@@ -21,8 +21,8 @@ class Illuminant(NamedTable):
         nm in steps of at most 10 nm; powers are 0 or more.
     name
         The name that files state; by default that of the source. A file's is its stem, or its whole
-        name where the stem is that of a built-in light with other numbers. A built-in name with
-        other numbers is refused.
+        name where the stem is that of a built-in light with other numbers; an object's gets
+        " (samples)" there. A built-in ``name`` with other numbers is refused.
 
     Raises
     ------

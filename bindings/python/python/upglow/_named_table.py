@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -36,7 +37,16 @@ class NamedTable:
             return cls._named_or_read(os.fspath(source), name)
         nm, values = samples(cls.__name__.lower(), source, columns=cls._columns)
         label = name or str(getattr(source, "name", "custom"))
-        return cls._kind.from_samples(label, np.ascontiguousarray(nm), np.ascontiguousarray(values))
+        arrays = np.ascontiguousarray(nm), np.ascontiguousarray(values)
+        try:
+            return cls._kind.from_samples(label, *arrays)
+        except ValueError:
+            # The source may be called like a built-in table with other numbers, such as one extended
+            # to our range. Any other fault is found again.
+            if not name:
+                with suppress(ValueError):
+                    return cls._kind.from_samples(f"{label} (samples)", *arrays)
+            raise
 
     @classmethod
     def _named_or_read(cls, word: str, name: str | None) -> Any:

@@ -23,8 +23,8 @@ class Observer(NamedTable):
         end are NaN, the functions are 0. Below 360 nm samples must be 0.
     name
         The name that files state; by default that of the source. A file's is its stem, or its whole
-        name where the stem is that of a built-in observer with other numbers. A built-in name with
-        other numbers is refused.
+        name where the stem is that of a built-in observer with other numbers; an object's gets
+        " (samples)" there. A built-in ``name`` with other numbers is refused.
 
     Raises
     ------
