@@ -14,12 +14,9 @@ pub const SLOPE_MAX_PER_NM: f64 = 0.01;
 /// Sweeps of the figures that state no other number; the paper calls them iterations (section 5.1).
 pub const SWEEPS: u32 = 4;
 
-/// Full width at half maximum of the analytic absorption, nm. The paper gives no width and neither do
-/// Jung et al.: this one is ours.
-pub const ANALYTIC_ABSORPTION_FWHM_NM: f64 = 50.0;
-
-/// Full width at half maximum of the analytic emission, nm; ours as well.
-pub const ANALYTIC_EMISSION_FWHM_NM: f64 = 45.0;
+/// Full widths at half maximum of the analytic absorption and emission, nm. The paper gives no widths and
+/// neither do Jung et al.: these are ours.
+pub const ANALYTIC_FWHM_NM: [u32; 2] = [50, 45];
 
 /// `ACEScg` under D65 for the CIE 1931 2° observer (section 5). The paper does not say how the white of
 /// `ACEScg` becomes that of D65; this is Bradford adaptation.
@@ -46,12 +43,16 @@ pub fn dyes(mixing: Mixing) -> DyeModel {
     DyeModel::new(set, options).expect("a thin solution of every set is possible")
 }
 
-/// The analytic fluorescence of Jung et al. 2019, which the paper compares its dyes with, with the two
-/// widths of our choice.
-pub fn analytic() -> AnalyticModel {
-    let [absorption, emission] = [ANALYTIC_ABSORPTION_FWHM_NM, ANALYTIC_EMISSION_FWHM_NM];
+/// The analytic fluorescence of Jung et al. 2019, which the paper compares its dyes with, for full widths
+/// at half maximum of absorption and emission; the usual ones are [`ANALYTIC_FWHM_NM`].
+///
+/// # Panics
+///
+/// If a width is not in 15 to 80 nm.
+pub fn analytic(fwhm_nm: [u32; 2]) -> AnalyticModel {
+    let [absorption, emission] = fwhm_nm.map(f64::from);
     AnalyticModel::new(absorption, emission, Accounting::Energy, 1.0)
-        .expect("the widths are in range")
+        .expect("the widths are in 15 to 80 nm")
 }
 
 /// The paper's method with coefficients as the variables, under its limit of slopes.

@@ -66,9 +66,37 @@ fn the_report_is_the_same_in_the_file_and_on_standard_output() {
 }
 
 #[test]
+fn measured_materials_that_cannot_be_read_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let report = |measured: &Path| {
+        let words = format!("reproduce --resolution 4 --bispectral {}", measured.display());
+        refused(folder.path(), 1, &words)
+    };
+    let measured = tempfile::tempdir().unwrap();
+    let name = measured.path().display().to_string();
+    assert_eq!(
+        report(measured.path()),
+        format!("upglow-study: {name}: no file .BFC, expected BFC-450 matrices\n")
+    );
+    std::fs::write(measured.path().join("a.bfc"), "VEC_01\nCSV\n").unwrap();
+    let message = report(measured.path());
+    let expected = r#"a.bfc: line 2 is "CSV", expected BFC-450 Matrix File"#;
+    assert!(
+        message.ends_with(&format!("{expected}\n")) && message.lines().count() == 1,
+        "{message}"
+    );
+    let message = report(&measured.path().join("absent"));
+    assert!(message.contains("expected a folder of BFC-450 matrices"), "{message}");
+}
+
+#[test]
 fn the_claims_are_printed_as_one_json_document() {
     let folder = tempfile::tempdir().unwrap();
     let printed = done(folder.path(), "reproduce --resolution 4 --json");
-    assert!(printed.starts_with(r#"{"resolution":4,"claims":[{"id":"metric-time","section":"#));
+    assert!(
+        printed.starts_with(
+            r#"{"resolution":4,"measured":[],"claims":[{"id":"metric-time","section":"#
+        )
+    );
     assert_eq!(printed.matches('\n').count(), 1);
 }

@@ -47,6 +47,10 @@ pub(crate) struct FiguresArgs {
 
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct ReproduceArgs {
+    /// Folder of measured fluorescent materials, as .BFC files of the spectrofluorimeter BFC-450, to judge how
+    /// realistic fitted ones are; without it that claim is not judged
+    #[arg(long, value_name = "FOLDER")]
+    pub(crate) bispectral: Option<PathBuf>,
     /// Also write the report to this file
     #[arg(long, short, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,

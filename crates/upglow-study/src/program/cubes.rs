@@ -26,7 +26,10 @@ pub(crate) enum StudyCube {
     /// The paper's method with shift, width and slope as the variables: CIEDE2000, four sweeps.
     PaperFeatures,
     /// The paper's method with analytic fluorescence: CIEDE2000, four sweeps.
-    PaperAnalytic,
+    PaperAnalytic {
+        /// Full widths at half maximum of absorption and emission, nm.
+        fwhm_nm: [u32; 2],
+    },
 }
 
 /// Sweeps of our own search. More of them find little: it meets most nodes that it can before the first.
@@ -40,9 +43,13 @@ impl StudyCube {
     pub(crate) const PAPER: Self =
         Self::Paper { metric: Metric::De2000, sweeps: konig2020::SWEEPS };
 
+    /// The paper's method with analytic fluorescence of our widths.
+    pub(crate) const PAPER_ANALYTIC: Self =
+        Self::PaperAnalytic { fwhm_nm: konig2020::ANALYTIC_FWHM_NM };
+
     fn model(self) -> Model {
         match self {
-            Self::PaperAnalytic => Model::Analytic(konig2020::analytic()),
+            Self::PaperAnalytic { fwhm_nm } => Model::Analytic(konig2020::analytic(fwhm_nm)),
             Self::Search { .. } | Self::Paper { .. } | Self::PaperFeatures => {
                 Model::Dyes(konig2020::dyes(Mixing::Pooled))
             }
@@ -57,7 +64,7 @@ impl StudyCube {
             }
             Self::Paper { metric, sweeps } => konig2020::options(metric, sweeps),
             Self::PaperFeatures => FitOptions { method: Method::Konig2020Features, ..usual },
-            Self::PaperAnalytic => usual,
+            Self::PaperAnalytic { .. } => usual,
         }
     }
 }

@@ -94,6 +94,18 @@ impl Field {
         [shown.l - target.l, shown.a - target.a, shown.b - target.b]
     }
 
+    /// ΔE00 and ΔE76 between the color of a node's material and the color it should have.
+    pub(crate) fn differences(&self, node: usize) -> [f64; 2] {
+        let (shown, target) = (self.lab[node], self.target[node]);
+        [ciede2000(target, shown), target.de76(shown)]
+    }
+
+    /// Whether the colors of two neighbors differ visibly more, or less, than the colors that they should
+    /// have: 1 ΔE00 between the miss of one and that of the other.
+    pub(crate) fn jumps(&self, node: usize, neighbor: usize) -> bool {
+        self.surprise(node, self.miss(neighbor)) >= ARTIFACT
+    }
+
     fn neighbors_in_layer(&self, node: usize) -> Vec<usize> {
         let n = self.cube.resolution();
         let [_, green, red] = self.cube.coordinates(node);
@@ -167,16 +179,6 @@ impl Field {
                 |k: usize| ((factors[below][k] + factors[above][k]) / 2.0 - factors[node][k]).abs();
             (0..31).map(off).sum::<f64>() / 31.0
         }))
-    }
-
-    /// Pairs of neighbors along each axis.
-    pub(crate) fn pairs(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
-        let n = self.cube.resolution();
-        (0..self.cube.nodes().len()).flat_map(move |node| {
-            let next =
-                move |stride: usize| (node / stride % n + 1 < n).then_some((node, node + stride));
-            [1, n, n * n].into_iter().filter_map(next)
-        })
     }
 
     fn triples(&self) -> impl Iterator<Item = [usize; 3]> + '_ {

@@ -4,6 +4,7 @@
 //! Python package needs too are in the library of this crate.
 
 mod args;
+mod bispectral;
 mod claims;
 mod commands;
 mod cubes;
@@ -23,5 +24,7 @@ fn main() -> ExitCode {
 #[cfg(test)]
 mod tests {
     mod claims;
+    mod definitions;
     mod figures;
+    mod reradiation;
 }

@@ -33,16 +33,17 @@ const SATURATED: (f64, f64) = (30.0, 50.0);
 const STEPS: usize = 16;
 
 /// Two reflectances.
-type Ends = [Sigmoid; 2];
+pub(super) type Ends = [Sigmoid; 2];
 
-/// Random pairs of bright and saturated reflectances of a cube whose slopes have the same sign.
-pub(super) fn random_pairs(field: &Field) -> Vec<Ends> {
+/// Random pairs of bright and saturated reflectances of a cube whose slopes have the same sign, and whose
+/// features both pass a test.
+pub(super) fn random_pairs(field: &Field, is_meant: impl Fn(&Features) -> bool) -> Vec<Ends> {
     let cube = field.cube();
     let usable: Vec<Sigmoid> = (0..cube.nodes().len())
         .map(|node| cube.node_material(node).reflectance)
         .filter(|&reflectance| {
             is_vivid(lab(field.sums(), color(field.sums(), reflectance)))
-                && features(reflectance).is_some()
+                && features(reflectance).is_some_and(|found| is_meant(&found))
         })
         .collect();
     if usable.is_empty() {

@@ -5,6 +5,7 @@ use upglow_terminal::{Console, Failure, Report, files};
 
 use super::failure;
 use crate::args::ReproduceArgs;
+use crate::bispectral::Measured;
 use crate::claims::{Claim, claims};
 use crate::cubes::Cubes;
 use crate::report::to_markdown;
@@ -12,6 +13,8 @@ use crate::report::to_markdown;
 #[derive(Clone, Debug, Serialize)]
 struct ReproduceReport {
     resolution: usize,
+    /// The measured materials, by the names of their files.
+    measured: Vec<String>,
     claims: Vec<Claim>,
 }
 
@@ -19,9 +22,13 @@ pub(super) fn run(args: &ReproduceArgs, console: &Console) -> Result<(), Failure
     if let Some(path) = &args.output {
         files::check_output(path)?;
     }
+    let folder = args.bispectral.as_deref();
+    let measured = folder.map(Measured::read_folder).transpose()?.unwrap_or_default();
     let cubes = Cubes::new(args.resolution);
-    let claims = console.work(args.threads, |bar| claims(&cubes, bar))?.map_err(failure)?;
-    let report = ReproduceReport { resolution: args.resolution, claims };
+    let claims =
+        console.work(args.threads, |bar| claims(&cubes, &measured, bar))?.map_err(failure)?;
+    let measured = measured.into_iter().map(|found| found.name).collect();
+    let report = ReproduceReport { resolution: args.resolution, measured, claims };
     if let Some(path) = &args.output {
         files::write(path, report.text().as_bytes())?;
     }
@@ -30,6 +37,6 @@ pub(super) fn run(args: &ReproduceArgs, console: &Console) -> Result<(), Failure
 
 impl Report for ReproduceReport {
     fn text(&self) -> String {
-        to_markdown(self.resolution, &self.claims)
+        to_markdown(self.resolution, &self.measured, &self.claims)
     }
 }

@@ -33,7 +33,7 @@ struct Row {
 
 pub(super) fn figure_1(studio: &Studio<'_>) -> Result<Figure, BuildError> {
     let get = |which| studio.cubes.get(which, studio.watch);
-    let analytic = get(StudyCube::PaperAnalytic)?;
+    let analytic = get(StudyCube::PAPER_ANALYTIC)?;
     let rows = [
         Row { model: "analytic", letters: ["a", "c", "e"], cube: analytic },
         Row { model: "eight dyes", letters: ["b", "d", "f"], cube: get(StudyCube::PAPER)? },
