@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 use upglow::Interpolation;
-use upglow_fit::{Check, Offender, Verdict, VerifyOptions, verify};
+use upglow_fit::{Check, Verdict, VerifyOptions, verify};
 use upglow_terminal::{Console, Failure, Report};
 
 use crate::args::VerifyArgs;
@@ -40,12 +40,15 @@ pub(crate) fn run(args: &VerifyArgs, console: &Console) -> Result<(), Failure> {
     }
 }
 
-/// Names the broken law and the worst offender.
+/// Names the broken law, and the worst offender and how many there are, which means do not have.
 fn broken(check: &Check) -> String {
     let Check { name, value, unit, limit, violations, worst, .. } = check;
-    let found = worst.as_ref().map_or_else(|| value.to_string(), Offender::to_string);
     let expected = limit.map_or("none".into(), |limit| format!("at most {limit} {unit}"));
-    format!("{name}: {found}, expected {}; {violations} violations", expected.trim_end())
+    let expected = expected.trim_end();
+    match worst {
+        Some(worst) => format!("{name}: {worst}, expected {expected}; {violations} violations"),
+        None => format!("{name}: {value}, expected {expected}"),
+    }
 }
 
 impl Report for VerificationReport<'_> {
@@ -93,7 +96,29 @@ fn short(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
+    use upglow_fit::Offender;
+
     use super::*;
+
+    #[test]
+    fn a_mean_above_its_limit_is_named_by_its_value() {
+        let worst =
+            Offender { found: 0.5, wavelength_nm: Some(400.0), node: None, rgb: None, dye: None };
+        let mean = Check {
+            name: "grid-nodes-mean",
+            about: "",
+            verdict: Verdict::Broken,
+            value: 0.25,
+            limit: Some(0.05),
+            unit: "CIEDE2000",
+            checked: 8,
+            violations: 1,
+            worst: None,
+        };
+        assert_eq!(broken(&mean), "grid-nodes-mean: 0.25, expected at most 0.05 CIEDE2000");
+        let law = Check { name: "slope", unit: "1/nm", worst: Some(worst), ..mean };
+        assert_eq!(broken(&law), "slope: 0.5 at 400 nm, expected at most 0.05 1/nm; 1 violations");
+    }
 
     #[test]
     fn numbers_of_any_size_are_short() {
