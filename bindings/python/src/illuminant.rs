@@ -7,6 +7,7 @@ use pyo3::prelude::*;
 use upglow_color::Grid;
 
 use crate::errors::value_error;
+use crate::observer::Observer;
 
 /// A named light: relative spectral power from 300 to 830 nm by 1 nm.
 #[pyclass(frozen, module = "upglow._upglow")]
@@ -68,6 +69,18 @@ impl Illuminant {
     #[getter]
     fn power<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, self.0.power().values())
+    }
+
+    /// Relative power in each band of a grid (first, last, step: nm).
+    fn power_in_bands<'py>(
+        &self,
+        py: Python<'py>,
+        grid_nm: [u32; 3],
+        observer: &Observer,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let [first_nm, last_nm, step_nm] = grid_nm;
+        let grid = Grid::try_new(first_nm, last_nm, step_nm).map_err(value_error)?;
+        Ok(PyArray1::from_vec(py, self.0.power_in_bands(grid, &observer.0)))
     }
 
     /// The wavelengths of every table, 300, 301 … 830 nm.

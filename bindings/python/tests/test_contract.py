@@ -77,7 +77,7 @@ def test_a_light_of_other_numbers_never_has_a_built_in_name(tmp_path) -> None:
         (lambda: upglow.Illuminant((upglow.FIT_NM, np.ones(3))), "illuminant: wavelengths of shape"),
         (lambda: upglow.Illuminant((upglow.FIT_NM, np.zeros(107))), "custom: no power"),
         (lambda: upglow.Illuminant.line(float("nan"), 10), "peak_nm is NaN, expected a finite"),
-        (lambda: upglow.Illuminant.line(365, 0), "fwhm_nm is 0, expected > 0"),
+        (lambda: upglow.Illuminant.line(365, 0), "fwhm_nm is 0, expected 0.001 or more"),
         (lambda: upglow.Illuminant.line(-1e9, 1), "no power between 360 and 830 nm"),
     ],
 )

@@ -12,16 +12,22 @@ use crate::values::Xyz;
 #[must_use]
 pub struct ColorSolid {
     colorimetry: Colorimetry,
+    /// From the red end.
     bands: Vec<Band>,
-    fluorescent: bool,
+    /// Color of one emitted photon at each wavelength of the grid, from the red end; empty for
+    /// reflectances.
+    emitted: Vec<[f64; 3]>,
 }
 
 /// One band of incident light.
 #[derive(Clone, Copy, Debug)]
 struct Band {
-    wavelength_nm: f64,
-    irradiance: f64,
-    matching: [f64; 3],
+    /// Number of photons, relative.
+    photons: f64,
+    /// Color of one that is reflected.
+    reflected: [f64; 3],
+    /// How many of [`ColorSolid::emitted`] have at least the wavelength of this band.
+    longer: usize,
 }
 
 /// The point of a [`ColorSolid`] nearest to a color.
@@ -74,35 +80,34 @@ impl ColorSolid {
     }
 
     fn new(colorimetry: &Colorimetry, fluorescent: bool) -> Self {
-        let bands = colorimetry
-            .grid()
-            .wavelengths_nm()
-            .zip(colorimetry.irradiance())
-            .zip(colorimetry.matching())
-            .map(|((wavelength_nm, &irradiance), &matching)| Band {
-                wavelength_nm,
-                irradiance,
-                matching,
-            })
-            .collect();
-        Self { colorimetry: colorimetry.clone(), bands, fluorescent }
+        let photon = |nm: f64, matching: &[f64; 3]| matching.map(|m| m / nm);
+        let outgoing_nm: Vec<f64> = match fluorescent {
+            true => colorimetry.grid().wavelengths_nm().rev().collect(),
+            false => Vec::new(),
+        };
+        let matching = colorimetry.matching().iter().rev();
+        let emitted = outgoing_nm.iter().zip(matching).map(|(&nm, m)| photon(nm, m)).collect();
+        let incident = colorimetry.irradiance().iter().zip(colorimetry.seen());
+        let bands = colorimetry.wavelengths_nm().iter().zip(incident).rev();
+        let band = |(&nm, (&irradiance, seen))| Band {
+            photons: irradiance * nm,
+            reflected: photon(nm, seen),
+            longer: outgoing_nm.partition_point(|outgoing| *outgoing >= nm),
+        };
+        Self { colorimetry: colorimetry.clone(), bands: bands.map(band).collect(), emitted }
     }
 
     /// The color of the solid that lies furthest in direction `n`.
     pub fn support(&self, n: [f64; 3]) -> Xyz {
+        let better = |a, b| if dot(n, a) > dot(n, b) { a } else { b };
         let mut sum = Xyz::default();
-        // Color of a photon at the best outgoing wavelength so far; bands run from the red end.
-        let mut best = [0.0; 3];
-        for band in self.bands.iter().rev() {
-            let per_photon = band.matching.map(|m| m / band.wavelength_nm);
-            if !self.fluorescent {
-                best = [0.0; 3];
+        let (mut seen, mut emitted) = (0, [0.0; 3]);
+        for band in &self.bands {
+            for photon in &self.emitted[seen..band.longer] {
+                emitted = better(*photon, emitted);
             }
-            if dot(n, per_photon) > dot(n, best) {
-                best = per_photon;
-            }
-            let photons = band.irradiance * band.wavelength_nm;
-            sum += photons * Xyz(best);
+            seen = band.longer;
+            sum += band.photons * Xyz(better(band.reflected, emitted));
         }
         sum
     }

@@ -4,6 +4,7 @@ use crate::contract::{Contract, ContractError};
 use crate::grid::Grid;
 use crate::illuminant::Illuminant;
 use crate::lab::{Lab, lab_from_xyz};
+use crate::light_bands::{LightBands, Summation, total};
 use crate::matrix::Matrix3;
 use crate::observer::Observer;
 use crate::values::{LinearRgb, Xyz};
@@ -12,8 +13,11 @@ use crate::values::{LinearRgb, Xyz};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Colorimetry {
     grid: Grid,
+    summation: Summation,
+    wavelengths_nm: Vec<f64>,
     irradiance: Vec<f64>,
     matching: Vec<[f64; 3]>,
+    seen: Vec<[f64; 3]>,
     weights: Vec<[f64; 3]>,
     white: Xyz,
     xyz_from_rgb: Matrix3,
@@ -28,22 +32,23 @@ pub(crate) const LEAST_SHARE: f64 = 1e-12;
 impl Colorimetry {
     pub(crate) fn try_new(contract: &Contract, grid: Grid) -> Result<Self, ContractError> {
         let matching = contract.observer.on(grid);
-        let light = sampled(&contract.illuminant, grid);
-        let luminance: f64 = light.iter().zip(&matching).map(|(l, m)| l * m[1]).sum();
+        let LightBands { wavelengths_nm, power, seen, summation } =
+            LightBands::new(&contract.illuminant, &contract.observer, grid);
+        let luminance: f64 = power.iter().zip(&seen).map(|(l, m)| l * m[1]).sum();
         let names = || (contract.observer.name().to_owned(), contract.illuminant.name().to_owned());
         if !(luminance.is_normal() && luminance > 0.0) {
             let (observer, illuminant) = names();
             let step_nm = grid.step_nm();
             return Err(ContractError::Dark { observer, illuminant, step_nm });
         }
-        let power: f64 = light.iter().sum();
-        let share = luminance / (power * contract.observer.matching()[1].peak());
+        let all: f64 = power.iter().sum();
+        let share = luminance / (all * contract.observer.matching()[1].peak());
         if share < LEAST_SHARE {
             let (observer, illuminant) = names();
             return Err(ContractError::Dim { observer, illuminant, share });
         }
-        let irradiance: Vec<f64> = light.iter().map(|l| l / luminance).collect();
-        let (weights, white) = weights(&irradiance, &matching);
+        let irradiance: Vec<f64> = power.iter().map(|l| l / luminance).collect();
+        let (weights, white) = weights(&irradiance, &seen);
         let space_white = Xyz::from_chromaticity(contract.space.white());
         let xyz_from_rgb = contract.adaptation.target_from_source(space_white, white)
             * contract.space.xyz_from_rgb();
@@ -52,25 +57,49 @@ impl Colorimetry {
             let (observer, illuminant) = names();
             ContractError::White { observer, illuminant, white: white.0 }
         })?;
-        Ok(Self { grid, irradiance, matching, weights, white, xyz_from_rgb, rgb_from_xyz })
+        Ok(Self {
+            grid,
+            summation,
+            wavelengths_nm,
+            irradiance,
+            matching,
+            seen,
+            weights,
+            white,
+            xyz_from_rgb,
+            rgb_from_xyz,
+        })
     }
 
-    /// The grid of every sum.
+    /// The grid of sums over emitted light.
     pub fn grid(&self) -> Grid {
         self.grid
     }
 
-    /// Irradiance of each band, scaled so that the perfect diffuser has Y = 1, `[wavelength]`.
+    /// The wavelengths of sums over incident light, nm: those of the grid. A smooth light is sampled
+    /// there. A light with structure between them, such as lines, is integrated: sums are exact for
+    /// reflectances that are linear between these wavelengths.
+    pub fn wavelengths_nm(&self) -> &[f64] {
+        &self.wavelengths_nm
+    }
+
+    /// Irradiance of each band of incident light, scaled so that the perfect diffuser has Y = 1,
+    /// `[wavelength]`.
     pub fn irradiance(&self) -> &[f64] {
         &self.irradiance
     }
 
-    /// x̄, ȳ, z̄, `[wavelength][x̄ ȳ z̄]`.
+    /// x̄, ȳ, z̄ at each wavelength of the grid, for emitted light, `[wavelength][x̄ ȳ z̄]`.
     pub fn matching(&self) -> &[[f64; 3]] {
         &self.matching
     }
 
-    /// What a reflectance of 1 in each band adds to X, Y, Z, `[wavelength][X Y Z]`.
+    /// Mean x̄, ȳ, z̄ of each band of incident light, `[wavelength][x̄ ȳ z̄]`.
+    pub(crate) fn seen(&self) -> &[[f64; 3]] {
+        &self.seen
+    }
+
+    /// What a reflectance of 1 in each band of incident light adds to X, Y, Z, `[wavelength][X Y Z]`.
     pub fn weights(&self) -> &[[f64; 3]] {
         &self.weights
     }
@@ -105,7 +134,7 @@ impl Colorimetry {
         lab_from_xyz(xyz, self.white)
     }
 
-    /// The color of a reflectance sampled on the grid.
+    /// The color of a reflectance sampled at [`Colorimetry::wavelengths_nm`].
     pub fn xyz_from_reflectance(&self, reflectance: impl IntoIterator<Item = f64>) -> Xyz {
         reflectance.into_iter().zip(&self.weights).map(|(r, w)| r * Xyz(*w)).sum()
     }
@@ -116,23 +145,29 @@ impl Colorimetry {
     /// ultraviolet lamp white is nearly black, and what fluoresces is not.
     #[must_use]
     pub fn relit(&self, observer: &Observer, light: &Illuminant) -> Self {
-        let (matching, light) = (observer.on(self.grid), sampled(light, self.grid));
-        let power = |bands: &[f64]| bands.iter().sum::<f64>();
-        let scale = power(&self.irradiance) / power(&light);
-        let irradiance: Vec<f64> = light.iter().map(|l| l * scale).collect();
-        let (weights, white) = weights(&irradiance, &matching);
-        Self { irradiance, matching, weights, white, ..self.clone() }
+        let matching = observer.on(self.grid);
+        let LightBands { wavelengths_nm, power, seen, summation } =
+            LightBands::new(light, observer, self.grid);
+        let scale = total(self.grid, &self.irradiance, self.summation, summation)
+            / total(self.grid, &power, summation, self.summation);
+        let irradiance: Vec<f64> = power.iter().map(|l| l * scale).collect();
+        let (weights, white) = weights(&irradiance, &seen);
+        Self {
+            summation,
+            wavelengths_nm,
+            irradiance,
+            matching,
+            seen,
+            weights,
+            white,
+            ..self.clone()
+        }
     }
 }
 
-/// Power of a light at each wavelength of a grid.
-fn sampled(light: &Illuminant, grid: Grid) -> Vec<f64> {
-    grid.wavelengths_nm().map(|nm| light.power().at(nm)).collect()
-}
-
 /// Integration weights, and their sum, the white.
-fn weights(irradiance: &[f64], matching: &[[f64; 3]]) -> (Vec<[f64; 3]>, Xyz) {
-    let weights: Vec<_> = irradiance.iter().zip(matching).map(|(e, m)| m.map(|v| e * v)).collect();
+fn weights(irradiance: &[f64], seen: &[[f64; 3]]) -> (Vec<[f64; 3]>, Xyz) {
+    let weights: Vec<_> = irradiance.iter().zip(seen).map(|(e, m)| m.map(|v| e * v)).collect();
     let white = weights.iter().copied().map(Xyz).sum();
     (weights, white)
 }
@@ -176,6 +211,22 @@ mod tests {
         let colorimetry = contract.on(Grid::FIT);
         let relit = colorimetry.relit(&contract.observer, &contract.illuminant);
         assert_close(relit.white().0, colorimetry.white().0, ROUNDING);
+    }
+
+    #[test]
+    fn relighting_with_lines_gives_the_same_white_by_sums_over_5_and_1_nm() {
+        // Sums of daylight over 5 nm and over 1 nm.
+        const DAYLIGHT: f64 = 5e-4;
+        let contract = Contract::default();
+        for peak_nm in [405.2, 546.1, 588.0] {
+            let line = Illuminant::line("line", peak_nm, 1.5).unwrap();
+            let white = |grid| contract.on(grid).relit(&contract.observer, &line).white();
+            let (fit, fine) = (white(Grid::FIT), white(Grid::FINE));
+            for k in 0..3 {
+                let error = (fit.0[k] - fine.0[k]).abs();
+                assert!(error <= DAYLIGHT * fine.0[k], "{peak_nm} {fit:?} {fine:?}");
+            }
+        }
     }
 
     #[test]

@@ -68,7 +68,9 @@ impl Grid {
     }
 
     /// The wavelengths in ascending order, nm.
-    pub fn wavelengths_nm(self) -> impl ExactSizeIterator<Item = f64> + Clone {
+    pub fn wavelengths_nm(
+        self,
+    ) -> impl DoubleEndedIterator<Item = f64> + ExactSizeIterator + Clone {
         let Self { first_nm, step_nm, .. } = self;
         (0..self.len()).map(move |i| f64::from(first_nm) + f64::from(step_nm) * i as f64)
     }

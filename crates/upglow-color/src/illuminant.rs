@@ -3,8 +3,10 @@
 use std::path::Path;
 
 use crate::grid::Grid;
+use crate::light_bands::LightBands;
 use crate::names::{NameError, name_after_file};
-use crate::samples::{SampleRules, SamplesError, curves_from_samples};
+use crate::observer::Observer;
+use crate::samples::{SampleRules, SamplesError, curves_from_samples, fine_means};
 use crate::spectrum::{Spectrum, SpectrumCsvError, read_columns};
 use crate::tables::daylight::{DAYLIGHT_COMPONENTS, DAYLIGHT_FIRST_NM, DAYLIGHT_STEP_NM};
 
@@ -64,6 +66,14 @@ const NAME_TOLERANCE: f64 = 1e-5;
 
 /// The wavelength at which daylights and illuminant A have power 100, nm.
 const REFERENCE_NM: f64 = 560.0;
+
+/// The least full width at half maximum of a line, nm. Narrower ones would lose their power to the
+/// rounding of wavelengths.
+const NARROWEST_NM: f64 = 1e-3;
+
+/// Lines at least this wide, nm, are sampled: 1 nm samples have their power and colors within 1e-5.
+/// Narrower ones are averaged over each nanometer.
+const SAMPLED_FROM_NM: f64 = 2.0;
 
 impl Illuminant {
     /// The built-in lights.
@@ -156,23 +166,33 @@ impl Illuminant {
     }
 
     /// A lamp with one Gaussian line, like an ultraviolet LED: peak and full width at half maximum in
-    /// nm, power 100 at the peak.
+    /// nm, power 100 at the peak. The 1 nm samples of a line narrower than 2 nm are means that keep its
+    /// power.
     ///
     /// # Errors
     ///
-    /// [`IlluminantError`] if the width is not above 0, if no power is left between 360 and 830 nm, or
-    /// if the name is that of a built-in light.
+    /// [`IlluminantError`] if the width is below 0.001 nm, if no power is left between 360 and 830 nm,
+    /// or if the name is that of a built-in light.
     pub fn line(name: &str, peak_nm: f64, fwhm_nm: f64) -> Result<Self, IlluminantError> {
         let fault = |what, found, expected| Err(IlluminantError::Line { what, found, expected });
         if !peak_nm.is_finite() {
             return fault("peak_nm", peak_nm, "a finite number");
         }
-        if !(fwhm_nm.is_finite() && fwhm_nm > 0.0) {
-            return fault("fwhm_nm", fwhm_nm, "> 0");
+        if !(fwhm_nm.is_finite() && fwhm_nm >= NARROWEST_NM) {
+            return fault("fwhm_nm", fwhm_nm, "0.001 or more");
         }
         let shape = |nm: f64| (-4.0 * 2f64.ln() * ((nm - peak_nm) / fwhm_nm).powi(2)).exp();
         let line = Self::from_fn(name, |nm| 100.0 * shape(nm));
-        Self::from_spectrum(name, &line.power)
+        if fwhm_nm >= SAMPLED_FROM_NM {
+            return Self::from_spectrum(name, &line.power);
+        }
+        // To three widths on either side of the peak, where the line has fallen to 1e-11.
+        let near = (-48..=48).map(|i| peak_nm + fwhm_nm / 16.0 * f64::from(i));
+        let ends = [f64::from(Grid::FINE.first_nm()) - 1.0, f64::from(Grid::FINE.last_nm()) + 1.0];
+        let [first, last] = ends;
+        let inside = near.filter(|nm| (first..last).contains(nm)).map(|nm| (nm, 100.0 * shape(nm)));
+        let samples = std::iter::once((first, 0.0)).chain(inside).chain([(last, 0.0)]);
+        Self::from_spectrum(name, &fine_means(samples))
     }
 
     /// A phase of daylight of the given nominal correlated color temperature.
@@ -220,6 +240,13 @@ impl Illuminant {
     /// Relative spectral power on [`Grid::FINE`].
     pub fn power(&self) -> &Spectrum {
         &self.power
+    }
+
+    /// Relative power in the band around each wavelength of a grid, in units of [`Illuminant::power`]:
+    /// a sample, or, if the light has structure between the grid's wavelengths that this observer or a
+    /// dye would notice, a mean of the 1 nm samples.
+    pub fn power_in_bands(&self, grid: Grid, observer: &Observer) -> Vec<f64> {
+        LightBands::power_on(self, observer, grid)
     }
 }
 

@@ -36,6 +36,7 @@ mod grid;
 mod illuminant;
 mod jet;
 mod lab;
+mod light_bands;
 mod matrix;
 mod metric;
 mod names;

@@ -1,6 +1,7 @@
 //! Measured samples: the rules they must follow, and the curves through them.
 
 use crate::grid::Grid;
+use crate::rounding::whole;
 use crate::spectrum::Spectrum;
 
 /// What samples of a curve must be.
@@ -17,6 +18,8 @@ pub struct SampleRules {
     dark_below_nm: f64,
     /// Whether samples may be absent at either end of a curve, where they count as zero.
     pub(crate) has_blank_ends: bool,
+    /// Whether samples between whole nanometers are averaged, so that narrow lines keep their area.
+    keeps_areas: bool,
     /// What to suggest when the range is too short.
     range_hint: &'static str,
 }
@@ -29,12 +32,14 @@ pub(crate) const RELATIVE_PEAKS: [f64; 2] = [1e-30, 1e30];
 const TABLES_NM: [f64; 2] = [300.0, 830.0];
 
 impl SampleRules {
-    /// Lights: 300 to 830 nm in steps of at most 10 nm, which is how lamps are published.
+    /// Lights: 300 to 830 nm in steps of at most 10 nm, which is how lamps are published. Lines keep
+    /// their power, however finely they are sampled.
     pub const LIGHT: Self = Self {
         gap_limit_nm: 10.0,
         covered_nm: TABLES_NM,
         dark_below_nm: 0.0,
         has_blank_ends: false,
+        keeps_areas: true,
         range_hint: "",
     };
 
@@ -43,6 +48,7 @@ impl SampleRules {
     pub const DYE: Self = Self {
         gap_limit_nm: 5.0,
         has_blank_ends: true,
+        keeps_areas: false,
         range_hint: ": leave cells empty where it was not measured",
         ..Self::LIGHT
     };
@@ -55,6 +61,7 @@ impl SampleRules {
         covered_nm: [400.0, 700.0],
         dark_below_nm: 360.0,
         has_blank_ends: true,
+        keeps_areas: false,
         range_hint: "",
     };
 
@@ -254,7 +261,18 @@ impl<'n, const N: usize> Rows<'n, N> {
         for (k, column) in self.columns.into_iter().enumerate() {
             self.check_holes(k, column)?;
         }
-        Ok(std::array::from_fn(|k| self.sample_fine(k)))
+        Ok(std::array::from_fn(|k| self.on_fine(k)))
+    }
+
+    /// Column `k` on [`Grid::FINE`].
+    fn on_fine(&self, k: usize) -> Spectrum {
+        let [first_nm, last_nm] = TABLES_NM;
+        let is_between = |nm: f64| first_nm < nm && nm < last_nm && nm.fract() != 0.0;
+        // Otherwise the samples of the grid define the same lines.
+        if self.rules.keeps_areas && self.rows.iter().any(|row| is_between(row.nm)) {
+            return fine_means(self.rows.iter().map(|row| (row.nm, row.cells[k].unwrap_or(0.0))));
+        }
+        self.sample_fine(k)
     }
 
     fn check_range(&self) -> Result<(), SamplesError> {
@@ -303,6 +321,42 @@ impl<'n, const N: usize> Rows<'n, N> {
     }
 }
 
+/// The means around the wavelengths of [`Grid::FINE`] of the straight lines between samples, of
+/// ascending wavelength (nm) and value. The weight falls linearly to zero at the neighboring wavelengths,
+/// so that areas and centers of narrow lines are kept. Each wavelength must be between two samples or at
+/// one.
+pub(crate) fn fine_means(samples: impl Iterator<Item = (f64, f64)> + Clone) -> Spectrum {
+    let first_nm = f64::from(Grid::FINE.first_nm());
+    // Area below the lines and weight, with one more wavelength at either end.
+    let mut sums = vec![[0.0; 2]; Grid::FINE.len() + 2];
+    let last = (sums.len() - 1) as f64;
+    let positions = samples.map(|(nm, value)| (nm - first_nm + 1.0, value));
+    for ((start, first), (end, second)) in positions.clone().zip(positions.skip(1)) {
+        let mut low = start.clamp(0.0, last);
+        while low < end.min(last) {
+            let below = low.floor();
+            let high = end.min(below + 1.0);
+            let middle = (low + high) / 2.0;
+            // Simpson's rule is exact for the product of two lines.
+            for (at, share) in [(low, 1.0), (middle, 4.0), (high, 1.0)] {
+                let fraction = ((at - start) / (end - start)).clamp(0.0, 1.0);
+                let value = first * (1.0 - fraction) + second * fraction;
+                let weight = share * (high - low) / 6.0;
+                for (band, near) in [(below, 1.0 - (at - below)), (below + 1.0, at - below)] {
+                    let [area, all] = &mut sums[whole(band)];
+                    *area += weight * near * value;
+                    *all += weight * near;
+                }
+            }
+            low = high;
+        }
+    }
+    // Rounding must not make a mean of the largest numbers infinite.
+    let mean = |[area, all]: &[f64; 2]| (area / all).min(f64::MAX);
+    let means = sums[1..=Grid::FINE.len()].iter().map(mean).collect();
+    Spectrum::new(Grid::FINE, means).expect("means of finite samples are finite")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -321,6 +375,34 @@ mod tests {
         let line = light(&nm, &nm).unwrap();
         for at in Grid::FINE.wavelengths_nm() {
             assert!((line.at(at) - at).abs() < 1e-9, "{at}");
+        }
+    }
+
+    #[test]
+    fn narrow_lines_keep_their_area_and_place() {
+        // Rounding only.
+        const ROUNDING: f64 = 1e-9;
+        for (step_nm, peak_nm, fwhm_nm) in
+            [(0.1, 546.07, 0.3), (0.37, 435.8, 1.0), (0.05, 577.5, 0.1)]
+        {
+            let nm: Vec<f64> = (0..)
+                .map(|i| 299.9 + step_nm * f64::from(i))
+                .take_while(|nm| *nm < 830.5)
+                .collect();
+            let power: Vec<f64> =
+                nm.iter().map(|nm| (-((nm - peak_nm) / fwhm_nm).powi(2)).exp()).collect();
+            // Sums over equal steps, whose lines begin and end at zero.
+            let (area, moment) = (
+                power.iter().sum::<f64>() * step_nm,
+                nm.iter().zip(&power).map(|(nm, p)| nm * p).sum::<f64>() * step_nm,
+            );
+            let line = light(&nm, &power).unwrap();
+            let found = Grid::FINE.wavelengths_nm().zip(line.values());
+            assert!((line.values().iter().sum::<f64>() - area).abs() < ROUNDING, "{step_nm}");
+            assert!(
+                (found.map(|(nm, p)| nm * p).sum::<f64>() - moment).abs() < ROUNDING * moment,
+                "{step_nm}"
+            );
         }
     }
 
@@ -388,7 +470,10 @@ mod tests {
         fn no_samples_cause_a_panic(
             rows in proptest::collection::vec(proptest::num::f64::ANY, 0..200),
             step in 0.0..10.0_f64,
+            powers in proptest::collection::vec(0.0..f64::MAX, 200..700),
         ) {
+            let nm: Vec<f64> = (0..powers.len()).map(|i| 299.5 + 2.7 * i as f64).collect();
+            let _ = curves_from_samples(&nm, [("a", &powers)], SampleRules::LIGHT);
             let nm: Vec<f64> = (0..rows.len()).map(|i| 290.0 + step * i as f64).collect();
             for rules in [SampleRules::LIGHT, SampleRules::DYE, SampleRules::OBSERVER] {
                 let _ = curves_from_samples(&nm, [("a", &rows)], rules);

@@ -284,6 +284,23 @@ mod tests {
     }
 
     #[test]
+    fn sums_over_5_nm_are_close_to_those_over_1_nm_under_a_lamp_with_lines() {
+        let line = |nm: f64, peak_nm: f64| (-((nm - peak_nm) / 0.9).powi(2)).exp();
+        let mercury = [365.0, 404.7, 435.8, 546.1, 577.0, 579.1];
+        let power = Grid::FINE
+            .wavelengths_nm()
+            .map(|nm| 0.01 + mercury.iter().map(|&peak_nm| line(nm, peak_nm)).sum::<f64>());
+        let power = Spectrum::new(Grid::FINE, power.collect()).unwrap();
+        let illuminant = Illuminant::from_spectrum("mercury", &power).unwrap();
+        let contract = Contract { illuminant, ..Contract::default() };
+        for model in [Model::Reflectance, Model::Analytic(AnalyticModel::default()), dyes()] {
+            let report = report(&cube(contract.clone(), model, |_, _| {}));
+            assert!(report.holds(), "{:#?}", report.broken().collect::<Vec<_>>());
+            println!("{:?}", report.check("grid-nodes-max").unwrap().value);
+        }
+    }
+
+    #[test]
     fn a_slope_above_the_limit_is_caught_and_named() {
         let found = broken(COLORED, |node| node.reflectance[2] = 0.010_001);
         let rgb = LinearRgb([2.0 / 3.0, 0.0, 1.0 / 3.0]);

@@ -293,7 +293,8 @@ class Cube:
             power of the contract's from 300 to 830 nm; under an ultraviolet lamp, white is nearly
             black and only fluorescence is bright.
         step_nm
-            Step of the sums: 5 nm, as in fits and in the stored differences, or 1 nm.
+            Step of the sums: 5 nm, as in fits and in the stored differences, or 1 nm. A light with
+            lines is integrated between the steps.
 
         Returns
         -------
@@ -416,7 +417,8 @@ class Cube:
         Reflectance and fluorescence together, as a spectrophotometer with that lamp measures them;
         it may exceed 1. NaN where the light has no power. ``light`` is an `Illuminant`, or what one
         is made from; the contract's by default. Wavelengths as in `reradiation_matrix`; excitation
-        outside them is ignored.
+        outside them is ignored. A light with lines counts with its mean power in the band around each
+        wavelength.
 
         Returns
         -------
@@ -427,7 +429,8 @@ class Cube:
         first, last, step = grid(wavelengths_nm)
         if first < 300 or last > 830:
             raise ValueError(f"wavelengths {first} to {last} nm, expected within 300 to 830 nm")
-        power = illuminant.power[first - 300 : last - 299 : step]
+        observer = self._contract.observer._native
+        power = illuminant._native.power_in_bands((first, last, step), observer)
         leaving = matrix @ power
         factor: NDArray[np.float64] = np.full(leaving.shape, np.nan)
         return np.divide(leaving, power, out=factor, where=power > 0)

@@ -18,7 +18,8 @@ class Illuminant(NamedTable):
         A built-in name (``D65``, ``D60``, ``D55``, ``D50``, ``A``, ``E``; any case), the path of a
         CSV file with the header ``wavelength_nm,power``, a pair ``(wavelengths_nm, power)`` of
         arrays of shape (n,), or a ``colour.SpectralDistribution``. Sampled light covers 300 to 830
-        nm in steps of at most 10 nm; powers are 0 or more.
+        nm in steps of at most 10 nm; powers are 0 or more. It is linear between samples, so lines need
+        several samples across their width, unless samples are means over their steps.
     name
         The name that files state; by default that of the source. A file's is its stem, or its whole
         name where the stem is that of a built-in light with other numbers; an object's gets
@@ -47,7 +48,8 @@ class Illuminant(NamedTable):
     def line(cls, peak_nm: float, fwhm_nm: float, *, name: str | None = None) -> Illuminant:
         """A lamp with one Gaussian line, such as an ultraviolet LED.
 
-        ``peak_nm`` is its wavelength and ``fwhm_nm`` its full width at half maximum, both nm.
+        ``peak_nm`` is its wavelength and ``fwhm_nm`` its full width at half maximum, 0.001 or more,
+        both nm.
         """
         return cls(_upglow.Illuminant.line(name or f"{peak_nm:g} nm line", peak_nm, fwhm_nm))
 

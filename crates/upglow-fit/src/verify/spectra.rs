@@ -4,6 +4,7 @@
 //! wavelength at a time. Each run compares the two for some colors.
 
 use upglow::{Accounting, DyeCurves, DyeModel, Fluorescence, Material, Mixing, Model, Sigmoid};
+use upglow_color::rounding::whole;
 use upglow_color::{Colorimetry, Contract, Grid, Xyz};
 
 /// Wavelengths of [`Grid::FINE`].
@@ -23,9 +24,12 @@ pub(super) struct Sampler<'m> {
     dyes: Vec<SampledDye>,
 }
 
-/// Sums over every `stride`-th sample of [`Grid::FINE`].
+/// Sums over some of the samples of [`Grid::FINE`].
 pub(super) struct StridedSums {
     pub(super) colorimetry: Colorimetry,
+    /// The samples of incident light.
+    incident: Vec<usize>,
+    /// Every how many samples there is one of emitted light.
     stride: usize,
     /// Which entry of a [`Stimulus`] it makes.
     index: usize,
@@ -88,18 +92,21 @@ fn sampled(values: impl IntoIterator<Item = f64>) -> Box<Samples> {
 impl StridedSums {
     fn new(contract: &Contract, grid: Grid, index: usize) -> Self {
         let stride = (grid.step_nm() / Grid::FINE.step_nm()) as usize;
-        Self { colorimetry: contract.on(grid), stride, index }
+        let colorimetry = contract.on(grid);
+        let sample = |&nm: &f64| whole(nm - f64::from(Grid::FINE.first_nm()));
+        let incident = colorimetry.wavelengths_nm().iter().map(sample).collect();
+        Self { colorimetry, incident, stride, index }
     }
 
     /// The color of a reflectance.
     fn reflected(&self, share: &Samples) -> Xyz {
-        self.colorimetry.xyz_from_reflectance(share.iter().step_by(self.stride).copied())
+        self.colorimetry.xyz_from_reflectance(self.incident.iter().map(|&i| share[i]))
     }
 
     /// The energy of these shares of the incident light.
     fn energy(&self, share: &Samples) -> f64 {
         let light = self.colorimetry.irradiance();
-        share.iter().step_by(self.stride).zip(light).map(|(s, e)| s * e).sum()
+        self.incident.iter().zip(light).map(|(&i, e)| share[i] * e).sum()
     }
 
     /// The color of one unit of energy with this spectrum; `unit` is the sum of the samples.
