@@ -76,9 +76,10 @@ impl Colorimetry {
         self.grid
     }
 
-    /// The wavelengths of sums over incident light, nm: those of the grid. A smooth light is sampled
-    /// there. A light with structure between them, such as lines, is integrated: sums are exact for
-    /// reflectances that are linear between these wavelengths.
+    /// The wavelengths of sums over incident light, nm. For a smooth light they are those of the grid.
+    /// For a light with structure between them, such as lines, they are as many other whole numbers,
+    /// which include the ends of the grid and are dense where the light's structure is; sums over them
+    /// are exact for reflectances that are linear between them.
     pub fn wavelengths_nm(&self) -> &[f64] {
         &self.wavelengths_nm
     }

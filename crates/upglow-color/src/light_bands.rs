@@ -7,9 +7,9 @@ use crate::observer::Observer;
 /// A light as a sum over bands, and how an observer sees it.
 ///
 /// A smooth light is sampled at the wavelengths of a grid. A light with structure between them, such
-/// as the lines of a mercury lamp, is integrated: each of its 1 nm samples is divided between the two
-/// wavelengths around it, the nearer one getting more. That is exact for materials that are linear
-/// between these wavelengths.
+/// as the lines of a mercury lamp, is integrated: as many wavelengths are placed where the light needs
+/// them, and each of its 1 nm samples is divided between the two around it, the nearer one getting
+/// more. That is exact for materials that are linear between these wavelengths.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct LightBands {
     pub(crate) wavelengths_nm: Vec<f64>,
@@ -35,6 +35,14 @@ pub(crate) enum Summation {
 /// with a smaller one, daylights have other sums than in the literature. On other grids the limit is as
 /// the square of the step, because that is how much a smooth light moves.
 const MOVED_LIMIT: f64 = 0.01;
+
+/// Wavelengths of integration are at most this many steps of the grid apart. With more, materials are
+/// hardly sampled where the light is faint; with fewer, less are left for lines.
+const WIDEST_STEPS: usize = 4;
+
+/// All observers see nothing below this wavelength, nm. The number of wavelengths on either side is
+/// that of the grid: the sums of fits have room for no more.
+const FIRST_VISIBLE_NM: u32 = 360;
 
 /// The power of a 1 nm sample, and its X, Y, Z.
 type Amounts = [f64; 4];
@@ -69,7 +77,7 @@ impl LightBands {
     }
 
     fn integrated(fine: &[Amounts], observer: &Observer, grid: Grid) -> Self {
-        let places = regular(grid);
+        let places = placed(fine, grid);
         let nm: Vec<f64> =
             places.iter().map(|&at| f64::from(grid.first_nm()) + at as f64).collect();
         let sums = divided(fine, &places);
@@ -149,6 +157,66 @@ fn divided(fine: &[Amounts], places: &[usize]) -> Vec<Amounts> {
     sums
 }
 
+/// As many places as the grid has wavelengths, where they make the error of [`divided`] small: the
+/// ends of the grid, 360 nm, and the best between them.
+fn placed(fine: &[Amounts], grid: Grid) -> Vec<usize> {
+    let all = fine.iter().fold([0.0; 4], |all, amounts| [0, 1, 2, 3].map(|k| all[k] + amounts[k]));
+    let importance = |amounts: &Amounts| {
+        (0..4).map(|k| if all[k] > 0.0 { amounts[k] / all[k] } else { 0.0 }).sum()
+    };
+    let importance: Vec<f64> = fine.iter().map(importance).collect();
+    let own = regular(grid);
+    let visible = |at: &usize| grid.first_nm() as usize + at >= FIRST_VISIBLE_NM as usize;
+    let first_visible = own.iter().position(visible).unwrap_or(0);
+    let widest = WIDEST_STEPS * grid.step_nm() as usize;
+    let mut places = vec![0];
+    for range in [&own[..=first_visible], &own[first_visible..]] {
+        if let [start, .., end] = *range {
+            let found = best_places(&importance[start..=end], range.len() - 1, widest);
+            places.extend(found.into_iter().skip(1).map(|at| start + at));
+        }
+    }
+    places
+}
+
+/// The first place, the last, and those between them that make `count` intervals no wider than
+/// `widest` with the least error.
+///
+/// Between places a and b, a material's curve differs from the straight line by up to half of its second
+/// derivative times (λ − a)·(b − λ): the error to expect is the sum of that over the light. The best
+/// places for each number of intervals follow from those for one interval less.
+fn best_places(importance: &[f64], count: usize, widest: usize) -> Vec<usize> {
+    let error = |a: usize, b: usize| -> f64 {
+        (a + 1..b).map(|at| importance[at] * ((at - a) * (b - at)) as f64).sum()
+    };
+    let errors: Vec<Vec<f64>> = (0..importance.len())
+        .map(|b| (b.saturating_sub(widest)..b).map(|a| error(a, b)).collect())
+        .collect();
+    let mut least = vec![f64::INFINITY; importance.len()];
+    least[0] = 0.0;
+    let mut befores = Vec::with_capacity(count);
+    for _ in 0..count {
+        let mut next = vec![f64::INFINITY; importance.len()];
+        let mut before = vec![0; importance.len()];
+        for b in 1..importance.len() {
+            for (a, error) in (b.saturating_sub(widest)..b).zip(&errors[b]) {
+                if least[a] + error < next[b] {
+                    (next[b], before[b]) = (least[a] + error, a);
+                }
+            }
+        }
+        least = next;
+        befores.push(before);
+    }
+    let mut places = vec![importance.len() - 1];
+    for before in befores.iter().rev() {
+        let at = places[places.len() - 1];
+        places.push(before[at]);
+    }
+    places.reverse();
+    places
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -198,6 +266,31 @@ mod tests {
                     assert!(error <= ROUNDING * fine[0], "{peak_nm} {found:?} {fine:?}");
                 }
             }
+        }
+    }
+
+    #[test]
+    fn wavelengths_ascend_to_the_ends_of_the_grid_and_are_dense_at_lines() {
+        for [first_nm, last_nm, step_nm] in [[300, 830, 5], [310, 700, 10], [400, 800, 20]] {
+            let grid = Grid::try_new(first_nm, last_nm, step_nm).unwrap();
+            let nm = bands(&Illuminant::line("line", 546.1, 1.5).unwrap(), grid).wavelengths_nm;
+            assert_eq!(nm.len(), grid.len());
+            assert_eq!([nm[0], nm[nm.len() - 1]], [first_nm, last_nm].map(f64::from));
+            let widest = f64::from(step_nm) * WIDEST_STEPS as f64;
+            assert!(nm.windows(2).all(|pair| pair[0] < pair[1] && pair[1] - pair[0] <= widest));
+            assert!([545.0, 546.0, 547.0].iter().all(|at| nm.contains(at)), "{nm:?}");
+        }
+    }
+
+    #[test]
+    fn fits_have_room_for_the_visible_wavelengths() {
+        let visible = |light: &Illuminant| {
+            let nm = bands(light, Grid::FIT).wavelengths_nm;
+            nm.into_iter().filter(|nm| *nm >= f64::from(FIRST_VISIBLE_NM)).count()
+        };
+        for peak_nm in [365.0, 546.1] {
+            let line = Illuminant::line("line", peak_nm, 1.5).unwrap();
+            assert_eq!(visible(&line), visible(&Illuminant::default()));
         }
     }
 }

@@ -59,7 +59,7 @@ pub fn round_trip(
     let miss = |point: usize| {
         let rgb = LinearRgb(random_rgb(seed, point).0.map(|v| f64::from(to_single(v))));
         let found = table.sigmoid(rgb.0.map(to_single));
-        let shown = colorimetry.grid().wavelengths_nm().map(|nm| found.at(nm));
+        let shown = colorimetry.wavelengths_nm().iter().map(|&nm| found.at(nm));
         let shown = colorimetry.xyz_from_reflectance(shown);
         Metric::De2000.distance(&colorimetry, colorimetry.xyz_from_rgb(rgb), shown)
     };
@@ -176,7 +176,7 @@ mod tests {
             let place = [index / n.pow(3), index / (n * n) % n, index / n % n, index % n];
             let target = colorimetry.xyz_from_rgb(table.node_rgb(place));
             let found = Sigmoid { c0, c1, c2 };
-            let shown = colorimetry.grid().wavelengths_nm().map(|nm| found.at(nm));
+            let shown = colorimetry.wavelengths_nm().iter().map(|&nm| found.at(nm));
             let shown = colorimetry.xyz_from_reflectance(shown);
             let miss = Metric::De2000.distance(&colorimetry, target, shown);
             assert!(miss < SINGLE, "{place:?} {miss}");

@@ -293,8 +293,8 @@ class Cube:
             power of the contract's from 300 to 830 nm; under an ultraviolet lamp, white is nearly
             black and only fluorescence is bright.
         step_nm
-            Step of the sums: 5 nm, as in fits and in the stored differences, or 1 nm. A light with
-            lines is integrated between the steps.
+            Step of the sums: 5 nm, as in fits and in the stored differences, or 1 nm. For a light with
+            lines, the sums over 5 nm have as many wavelengths, placed at the lines.
 
         Returns
         -------

@@ -72,9 +72,9 @@ fn absorption(mixture: &Mixture<'_>, nm: f64) -> f64 {
 
 /// Light emitted by fluorescence, relative to its peak.
 fn emission(mixture: &Mixture<'_>, colorimetry: &Colorimetry) -> Vec<f64> {
-    let incident = || colorimetry.grid().wavelengths_nm().zip(colorimetry.irradiance());
+    let incident = || colorimetry.wavelengths_nm().iter().zip(colorimetry.irradiance());
     let at = |out_nm: f64| -> f64 {
-        incident().map(|(in_nm, power)| power * mixture.reradiation_per_nm(in_nm, out_nm)).sum()
+        incident().map(|(&in_nm, power)| power * mixture.reradiation_per_nm(in_nm, out_nm)).sum()
     };
     let emitted: Vec<f64> = if mixture.is_fluorescent() {
         Grid::FINE.wavelengths_nm().map(at).collect()

@@ -21,9 +21,8 @@ pub struct ModelOnGrid {
 }
 
 impl ModelOnGrid {
-    /// Samples the model's curves on the grid of `colorimetry`.
+    /// Samples the model's curves at the wavelengths of `colorimetry`.
     pub fn new(model: &Model, colorimetry: &Colorimetry) -> Self {
-        let grid = colorimetry.grid();
         let dyes = match model {
             Model::Dyes(model) => {
                 model.curves().iter().map(|c| Emitter::new(c, colorimetry)).collect()
@@ -33,7 +32,7 @@ impl ModelOnGrid {
         Self {
             model: model.clone(),
             colorimetry: colorimetry.clone(),
-            wavelengths_nm: grid.wavelengths_nm().collect(),
+            wavelengths_nm: colorimetry.wavelengths_nm().to_vec(),
             dyes,
         }
     }
@@ -48,7 +47,7 @@ impl ModelOnGrid {
         &self.colorimetry
     }
 
-    /// Wavelengths of every sum, nm.
+    /// Wavelengths of the sums over incident light, nm.
     pub fn wavelengths_nm(&self) -> &[f64] {
         &self.wavelengths_nm
     }
@@ -90,11 +89,8 @@ impl ModelOnGrid {
         stokes_shift_nm: f64,
     ) -> Emitted<2> {
         let absorption_nm = emission_peak_nm - stokes_shift_nm;
-        let step_nm = f64::from(self.colorimetry.grid().step_nm());
-        let samples = self.colorimetry.irradiance().iter().zip(self.colorimetry.matching());
         let (mut energy, mut by_absorption, mut by_mean) = (0.0, 0.0, 0.0);
-        let (mut stimulus, mut stimulus_by_peak) = ([0.0; 3], [0.0; 3]);
-        for ((e, m), &nm) in samples.zip(&self.wavelengths_nm) {
+        for (e, &nm) in self.colorimetry.irradiance().iter().zip(&self.wavelengths_nm) {
             let (a, a_slope) = model.absorption(absorption_nm, nm);
             let share = model.accounting().share(nm, emission_peak_nm);
             energy += a * e * share;
@@ -102,6 +98,11 @@ impl ModelOnGrid {
             if model.accounting() == Accounting::Photon && nm < emission_peak_nm {
                 by_mean -= a * e * nm / (emission_peak_nm * emission_peak_nm);
             }
+        }
+        let grid = self.colorimetry.grid();
+        let step_nm = f64::from(grid.step_nm());
+        let (mut stimulus, mut stimulus_by_peak) = ([0.0; 3], [0.0; 3]);
+        for (m, nm) in self.colorimetry.matching().iter().zip(grid.wavelengths_nm()) {
             let (g, g_slope) = model.emission(emission_peak_nm, nm);
             for k in 0..3 {
                 stimulus[k] += g * m[k] * step_nm;
@@ -169,7 +170,8 @@ impl Emitter {
         for (e, m) in emission.values().iter().zip(colorimetry.matching()) {
             (0..3).for_each(|k| stimulus[k] += e / area * m[k]);
         }
-        let absorption = curves.absorption.resampled(grid).values().to_vec();
+        let absorption: Vec<f64> =
+            colorimetry.wavelengths_nm().iter().map(|&nm| curves.absorption.at(nm)).collect();
         let absorbed = absorption.iter().zip(colorimetry.irradiance()).map(|(a, e)| a * e).sum();
         Self {
             absorption,
