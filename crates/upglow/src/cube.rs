@@ -14,6 +14,7 @@ mod plain_json;
 
 use crate::material::analytic_model::AnalyticModel;
 use crate::material::edge::Edge;
+use crate::material::film_model::FilmModel;
 use crate::material::mixture::Mixture;
 use crate::material::model::Model;
 use crate::material::{Fluorescence, Material};
@@ -57,10 +58,19 @@ pub struct Cube {
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FitRecord {
+    /// Name of the preset whose model and options these are; `None` if they were chosen one by one.
+    #[serde(deserialize_with = "Option::deserialize")]
+    pub preset: Option<String>,
     /// Name of the color difference that was minimized.
     pub metric: String,
-    /// Greatest |dr/dλ| allowed, 1/nm; `None` for no limit.
+    /// Greatest |dr/dλ| of a reflectance without fluorescence, 1/nm; `None` for no limit.
+    #[serde(deserialize_with = "Option::deserialize")]
     pub slope_max_per_nm: Option<f64>,
+    /// Greatest |dr/dλ| of a reflectance under fluorescence, 1/nm; `None` for no limit.
+    #[serde(deserialize_with = "Option::deserialize")]
+    pub slope_under_dyes_per_nm: Option<f64>,
+    /// Whether steeper reflectances were allowed where nothing else matches the color.
+    pub relaxed: bool,
     /// How often each node tried its neighbors' materials.
     pub sweeps: u32,
     /// Name of the search method.
@@ -74,10 +84,12 @@ pub struct FitRecord {
 pub struct Node {
     /// Wavelength (nm), level and slope (1/nm) of the reflectance's [`Edge`].
     pub reflectance: [f32; 3],
-    /// Number of the first dye in the ring; 0 where no dye is used.
-    pub dye: u8,
-    /// The other numbers of the model. Dyes: weight, concentration, 0. Bells: emission peak (nm),
-    /// Stokes shift (nm), concentration. Zeros where nothing fluoresces.
+    /// Numbers of the dyes in the model's set: in a ring, of the first and 0; in a film, of both. Zeros
+    /// where no dye is used.
+    pub dyes: [u8; 2],
+    /// The other numbers of the model. Ring: weight, concentration, 0. Film: optical density of each
+    /// dye, 0. Bells: emission peak (nm), Stokes shift (nm), concentration. Zeros where nothing
+    /// fluoresces.
     pub fluorescence: [f32; 3],
     /// CIEDE2000 of this material against the node's color under the contract.
     pub de2000: f32,
@@ -143,14 +155,14 @@ pub enum CubeError {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FitRecordError {
-    /// The slope limit is not a positive number.
+    /// A slope limit is not a positive number.
     #[error("slope limit {found}, expected > 0 per nm, or none")]
     SlopeLimit {
         /// The limit given, 1/nm.
         found: f64,
     },
-    /// The metric or the method is not one line of text.
-    #[error("metric or method: {0}")]
+    /// The preset, the metric or the method is not one line of text.
+    #[error("preset, metric or method: {0}")]
     Text(Box<NameError>),
 }
 
@@ -274,12 +286,14 @@ impl Cube {
 
 impl FitRecord {
     fn check(&self) -> Result<(), FitRecordError> {
-        if let Some(found) = self.slope_max_per_nm.filter(|s| !(s.is_finite() && *s > 0.0)) {
+        let limits = [self.slope_max_per_nm, self.slope_under_dyes_per_nm];
+        if let Some(found) = limits.into_iter().flatten().find(|s| !(s.is_finite() && *s > 0.0)) {
             return Err(FitRecordError::SlopeLimit { found });
         }
         let texts = [&self.metric, &self.method];
         texts
             .into_iter()
+            .chain(&self.preset)
             .try_for_each(|t| NameError::check_text(t))
             .map_err(|error| FitRecordError::Text(error.into()))
     }
@@ -302,19 +316,22 @@ impl Node {
     /// If a dye's number is above 254, which no [`crate::DyeSet`] has.
     pub fn new(reflectance: Edge, fluorescence: Fluorescence, de2000: f64) -> Self {
         let Edge { edge_nm, level, slope_per_nm } = reflectance;
-        let (dye, fluorescence) = match fluorescence {
-            Fluorescence::None => (0, [0.0; 3]),
+        let dye = |number: usize| u8::try_from(number).expect("a set has at most 255 dyes");
+        let (dyes, fluorescence) = match fluorescence {
+            Fluorescence::None => ([0; 2], [0.0; 3]),
             Fluorescence::Dyes { first, weight, concentration } => {
-                let dye = u8::try_from(first).expect("a ring has at most 255 dyes");
-                (dye, [weight, concentration, 0.0])
+                ([dye(first), 0], [weight, concentration, 0.0])
+            }
+            Fluorescence::Film { dyes, densities: [first, second] } => {
+                (dyes.map(dye), [first, second, 0.0])
             }
             Fluorescence::Analytic { emission_peak_nm, stokes_shift_nm, concentration } => {
-                (0, [emission_peak_nm, stokes_shift_nm, concentration])
+                ([0; 2], [emission_peak_nm, stokes_shift_nm, concentration])
             }
         };
         Self {
             reflectance: [edge_nm, level, slope_per_nm].map(to_single),
-            dye,
+            dyes,
             fluorescence: fluorescence.map(to_single),
             de2000: to_single(de2000),
         }
@@ -331,7 +348,11 @@ impl Node {
         let [first, second, third] = self.fluorescence.map(f64::from);
         let fluorescence = match model {
             Model::Dyes(_) if second > 0.0 => {
-                Fluorescence::Dyes { first: self.dye.into(), weight: first, concentration: second }
+                let [dye, _] = self.dyes;
+                Fluorescence::Dyes { first: dye.into(), weight: first, concentration: second }
+            }
+            Model::Film(_) if first > 0.0 => {
+                Fluorescence::Film { dyes: self.dyes.map(usize::from), densities: [first, second] }
             }
             Model::Analytic(_) if third > 0.0 => Fluorescence::Analytic {
                 emission_peak_nm: first,
@@ -341,6 +362,19 @@ impl Node {
             _ => Fluorescence::None,
         };
         Material { reflectance: self.edge().to_sigmoid(), fluorescence }
+    }
+
+    /// Checks that the dyes are at most those with these numbers.
+    fn check_dyes(&self, greatest: [usize; 2]) -> Result<(), NodeError> {
+        let mut dyes = self.dyes.into_iter().zip(greatest);
+        match dyes.find(|(dye, greatest)| usize::from(*dye) > *greatest) {
+            None => Ok(()),
+            Some((dye, greatest)) => {
+                let expected =
+                    if greatest == 0 { "0, it has no meaning here" } else { "a dye of the set" };
+                Err(NodeError { what: "the dye", found: dye.into(), expected })
+            }
+        }
     }
 
     /// Checks that its numbers describe a material of a model: every number is in its range, also where
@@ -362,23 +396,26 @@ impl Node {
         let is_dark = third == 0.0;
         match model {
             Model::Reflectance => {
-                unused("the dye", self.dye.into())?;
+                self.check_dyes([0; 2])?;
                 self.fluorescence.into_iter().try_for_each(|v| unused("the fluorescence", v))
             }
             Model::Dyes(model) => {
-                if usize::from(self.dye) >= model.curves().len() {
-                    let (what, found) = ("the dye", self.dye.into());
-                    return Err(NodeError { what, found, expected: "a dye of the ring" });
-                }
+                self.check_dyes([model.curves().len() - 1, 0])?;
                 fraction("the weight", first)?;
                 fraction("the concentration", second)?;
                 unused("the third number of the fluorescence", third)
             }
-            Model::Analytic(_) if is_dark && [first, second] == [0.0; 2] => {
-                unused("the dye", self.dye.into())
+            Model::Film(model) => {
+                self.check_dyes([model.dyes().curves().len() - 1; 2])?;
+                let [least, most] = FilmModel::DENSITIES.map(to_single);
+                check_range("the first optical density", first, least..=most, "0 to 6")?;
+                let expected = "0 to the first one";
+                check_range("the second optical density", second, least..=first, expected)?;
+                unused("the third number of the fluorescence", third)
             }
+            Model::Analytic(_) if is_dark && [first, second] == [0.0; 2] => self.check_dyes([0; 2]),
             Model::Analytic(_) => {
-                unused("the dye", self.dye.into())?;
+                self.check_dyes([0; 2])?;
                 fraction("the concentration", third)?;
                 let within = |[least, most]: [f64; 2]| to_single(least)..=to_single(most);
                 let peaks = within(AnalyticModel::EMISSION_PEAKS_NM);

@@ -52,6 +52,7 @@ pub use material::dye_model::{DyeCurves, DyeModel, DyeOptions, QuantumYield};
 pub use material::dye_set::{DyeSet, DyeSetError};
 pub use material::edge::Edge;
 pub use material::features::{FeatureError, Features};
+pub use material::film_model::FilmModel;
 pub use material::formula::{Accounting, Emitted, Mixing};
 pub use material::mixture::Mixture;
 pub use material::model::Model;

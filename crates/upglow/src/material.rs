@@ -7,6 +7,7 @@ pub(crate) mod dye_model;
 pub(crate) mod dye_set;
 pub(crate) mod edge;
 pub(crate) mod features;
+pub(crate) mod film_model;
 pub(crate) mod formula;
 pub(crate) mod lobe;
 pub(crate) mod mixture;
@@ -42,6 +43,13 @@ pub enum Fluorescence {
         /// Share of the light at the absorption's peak that is absorbed, 0..=1.
         concentration: f64,
     },
+    /// Two dyes of the model's set in one film, the denser first; [`Fluorescence::film`] makes it.
+    Film {
+        /// Numbers of the dyes; the same twice where there is one.
+        dyes: [usize; 2],
+        /// Optical density of each where its absorption is 1, 0..=6.
+        densities: [f64; 2],
+    },
     /// Bell-shaped absorption and emission by formula.
     Analytic {
         /// Wavelength of the emission's peak, nm.
@@ -54,13 +62,29 @@ pub enum Fluorescence {
 }
 
 impl Fluorescence {
-    /// The concentration, 0..=1; 0 where nothing fluoresces.
-    pub fn concentration(self) -> f64 {
+    /// A film of two dyes by number and optical density: the denser dye first, a dye without density
+    /// left out, and nothing where neither has any.
+    pub fn film(first: (usize, f64), second: (usize, f64)) -> Self {
+        let second_leads = second.1 > first.1 || second.1 == first.1 && second.0 < first.0;
+        let (first, second) = if second_leads { (second, first) } else { (first, second) };
+        match (first, second) {
+            ((_, most), _) if most <= 0.0 => Self::None,
+            ((dye, most), (_, least)) if least <= 0.0 => {
+                Self::Film { dyes: [dye; 2], densities: [most, 0.0] }
+            }
+            ((i, a), (j, b)) => Self::Film { dyes: [i, j], densities: [a, b] },
+        }
+    }
+
+    /// How much of the dyes there is: the sum of a film's optical densities, otherwise the
+    /// concentration, 0..=1; 0 where nothing fluoresces.
+    pub fn dose(self) -> f64 {
         match self {
             Self::None => 0.0,
             Self::Dyes { concentration, .. } | Self::Analytic { concentration, .. } => {
                 concentration
             }
+            Self::Film { densities: [first, second], .. } => first + second,
         }
     }
 }

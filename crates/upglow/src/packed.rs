@@ -8,6 +8,7 @@ pub(crate) mod lookup_table;
 pub(crate) mod mixture;
 pub(crate) mod model;
 pub(crate) mod node;
+mod proposal_table;
 mod quantile_table;
 mod sampling;
 mod vector;

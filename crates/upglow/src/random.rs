@@ -45,6 +45,12 @@ impl Random {
                 weight: self.unit(),
                 concentration,
             },
+            Model::Film(model) => {
+                let mut dye = |most: f64| {
+                    (self.below(model.dyes().curves().len()), most * self.unit().powi(2))
+                };
+                Fluorescence::film(dye(6.0), dye(3.0))
+            }
             Model::Analytic(_) => Fluorescence::Analytic {
                 emission_peak_nm: self.between(400.0, 710.0),
                 stokes_shift_nm: self.between(10.0, 120.0),
@@ -75,6 +81,9 @@ pub(crate) fn models() -> Vec<Model> {
     let mut models =
         vec![Model::Reflectance, Model::Analytic(AnalyticModel::default()), Model::Analytic(bells)];
     for accounting in [Accounting::Energy, Accounting::Photon] {
+        let set = DyeSet::named("konig8").expect("built in");
+        let film = FilmModel::new(set, accounting, QuantumYield::Measured).expect("in range");
+        models.push(Model::Film(film));
         for mixing in [Mixing::Pooled, Mixing::Separate] {
             for optical_density in [None, Some(4.0)] {
                 let quantum_yield = QuantumYield::Measured;

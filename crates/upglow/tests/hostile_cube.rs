@@ -11,8 +11,8 @@ use std::path::Path;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 use upglow::{
-    Accounting, AnalyticModel, Bispectral, Cube, DyeModel, DyeOptions, DyeSet, Edge, FitRecord,
-    Fluorescence, Interpolation, Mixing, Model, Node, QuantumYield, ReadCubeError,
+    Accounting, AnalyticModel, Bispectral, Cube, DyeModel, DyeOptions, DyeSet, Edge, FilmModel,
+    FitRecord, Fluorescence, Interpolation, Mixing, Model, Node, QuantumYield, ReadCubeError,
 };
 use upglow_color::{
     Contract, Grid, Illuminant, LinearRgb, MeasuredDye, Observer, RgbSpace, Spectrum,
@@ -128,6 +128,7 @@ fn cubes() -> Vec<(&'static str, Cube)> {
     let konig8 = DyeSet::named("konig8").unwrap();
     let built_in = dyes(konig8, fixed, Mixing::Pooled, Accounting::Energy, None);
     let own = dyes(mixed_set(), measured, Mixing::Separate, Accounting::Photon, Some(2.0));
+    let film = FilmModel::new(DyeSet::named("wide14").unwrap(), Accounting::Photon, fixed).unwrap();
     let analytic = Model::Analytic(AnalyticModel::default());
     let standard = Contract::default;
     let matching = Observer::default().matching().clone().map(|curve| curve.scaled(1.25));
@@ -152,6 +153,7 @@ fn cubes() -> Vec<(&'static str, Cube)> {
         ("reflectance", cube(standard(), Model::Reflectance)),
         ("dyes", cube(standard(), built_in)),
         ("own dyes, light, observer and space", cube(custom, own)),
+        ("film", cube(standard(), Model::Film(film))),
         ("analytic", cube(standard(), analytic)),
     ]
 }
@@ -164,6 +166,10 @@ fn node(i: u16, model: &Model) -> Node {
         Model::Reflectance => Fluorescence::None,
         Model::Dyes(_) => {
             Fluorescence::Dyes { first: usize::from(i % 4), weight: share, concentration }
+        }
+        Model::Film(_) => {
+            let dye = usize::from(i);
+            Fluorescence::film((dye, 3.0 * concentration), (dye + 1, concentration))
         }
         Model::Analytic(_) => Fluorescence::Analytic {
             emission_peak_nm: 450.0 + 200.0 * share,
@@ -238,7 +244,7 @@ fn names_are_true(cube: &Cube) -> bool {
     });
     let observer = Observer::named(observer.name())
         .map_or(true, |known| known.matching() == observer.matching());
-    let Model::Dyes(model) = cube.model() else { return space && light && observer };
+    let Some(model) = cube.model().dyes() else { return space && light && observer };
     let numbers = |dye: &MeasuredDye| {
         (dye.name.clone(), dye.absorption.clone(), dye.emission.clone(), dye.quantum_yield)
     };
@@ -488,8 +494,10 @@ fn is_unused(kind: &str, tensor: &str, index: usize) -> bool {
     let is_dark = |node: usize| node.is_multiple_of(7);
     match (kind, tensor) {
         ("analytic", "fluorescence") => is_dark(index / 3) && index % 3 < 2,
+        ("film", "dyes") => is_dark(index / 2),
+        (_, "dyes") => is_dark(index / 2) && index.is_multiple_of(2),
+        ("film", "fluorescence") => false,
         (_, "fluorescence") => is_dark(index / 3) && index.is_multiple_of(3),
-        (_, "dye") => is_dark(index),
         (_, "de2000") => true,
         _ => false,
     }
@@ -521,9 +529,7 @@ fn a_number_without_effect_is_in_its_range_or_refused() {
 
 #[test]
 fn the_third_number_of_dyes_is_zero_or_refused() {
-    for (kind, cube) in
-        cubes().into_iter().filter(|(_, cube)| matches!(cube.model(), Model::Dyes(_)))
-    {
+    for (kind, cube) in cubes().into_iter().filter(|(_, cube)| cube.model().dyes().is_some()) {
         let parts = Parts::of(&cube.to_bytes());
         let tensor = &parts.tensors["fluorescence"];
         for (node, value) in (0..8).zip(HOSTILE_NUMBERS) {

@@ -12,13 +12,14 @@ use upglow_color::Grid;
 
 use crate::aside::Aside;
 use crate::cube::error::{CubeFileError, ReadCubeError};
-use crate::cube::header::{ENTRY, Header, StoredCurves, holds_observer};
+use crate::cube::header::{ENTRY, Header, StoredCurves};
 use crate::cube::plain_json::PlainJson;
 use crate::cube::{Cube, CubeError, Node};
 use crate::material::model::Model;
 
 const REFLECTANCE: &str = "reflectance";
 const DYE: &str = "dye";
+const DYES: &str = "dyes";
 const FLUORESCENCE: &str = "fluorescence";
 const DE2000: &str = "de2000";
 const ILLUMINANT: &str = "illuminant";
@@ -116,23 +117,24 @@ impl Cube {
         let nodes = || self.nodes().iter();
         let fine = Grid::FINE.len();
         let power = self.contract().illuminant.power().values();
+        let matching = self.contract().observer.matching();
         let mut tensors = vec![
             Tensor::singles(REFLECTANCE, &three, nodes().flat_map(|node| node.reflectance)),
             Tensor::singles(DE2000, &one, nodes().map(|node| node.de2000)),
             Tensor::doubles(ILLUMINANT, &[fine], power.iter()),
+            Tensor::doubles(
+                OBSERVER,
+                &[matching.len(), fine],
+                matching.iter().flat_map(|curve| curve.values()),
+            ),
         ];
-        if holds_observer(self.contract()) {
-            let matching = self.contract().observer.matching();
-            let samples = matching.iter().flat_map(|curve| curve.values());
-            tensors.push(Tensor::doubles(OBSERVER, &[matching.len(), fine], samples));
-        }
         if !matches!(self.model(), Model::Reflectance) {
             let fluorescence = nodes().flat_map(|node| node.fluorescence);
             tensors.push(Tensor::singles(FLUORESCENCE, &three, fluorescence));
         }
-        if let Model::Dyes(model) = self.model() {
-            let dyes = nodes().map(|node| node.dye).collect();
-            tensors.push(Tensor::bytes(DYE, &one, dyes));
+        if let Some(model) = self.model().dyes() {
+            let dyes = nodes().flat_map(|node| node.dyes).collect();
+            tensors.push(Tensor::bytes(DYES, &[n, n, n, 2], dyes));
             let set = model.set().dyes();
             let curves = set
                 .iter()
@@ -178,7 +180,7 @@ impl Cube {
         let curves = read_curves(&file, &header)?;
         let contract = header.contract.to_contract(curves.illuminant, curves.observer)?;
         let model = header.model.to_model(curves.dyes)?;
-        let nodes = read_nodes(&file, n, &model)?;
+        let nodes = read_nodes(&file, &header, &model)?;
         Ok(Self::new(contract, model, header.fit, n, nodes)?)
     }
 }
@@ -240,7 +242,11 @@ fn layout(header: &Header) -> Vec<(&'static str, Dtype, Vec<usize>)> {
     match header.model.dye_count() {
         0 => {}
         dyes => {
-            layout.push((DYE, Dtype::U8, vec![n, n, n]));
+            layout.push(if header.holds_pairs() {
+                (DYES, Dtype::U8, vec![n, n, n, 2])
+            } else {
+                (DYE, Dtype::U8, vec![n, n, n])
+            });
             layout.push((DYE_CURVES, Dtype::F64, vec![dyes, 2, fine]));
         }
     }
@@ -319,7 +325,12 @@ fn read_dyes(file: &SafeTensors<'_>, count: usize) -> Result<Vec<[Vec<f64>; 2]>,
     Ok(pairs.map(|pair| [pair[..fine].to_vec(), pair[fine..].to_vec()]).collect())
 }
 
-fn read_nodes(file: &SafeTensors<'_>, n: usize, model: &Model) -> Result<Vec<Node>, ReadCubeError> {
+fn read_nodes(
+    file: &SafeTensors<'_>,
+    header: &Header,
+    model: &Model,
+) -> Result<Vec<Node>, ReadCubeError> {
+    let n = header.resolution;
     let count = n.pow(3);
     let reflectances = triples(tensor(file, REFLECTANCE, Dtype::F32, &[n, n, n, 3])?);
     let de2000 = singles(tensor(file, DE2000, Dtype::F32, &[n, n, n])?);
@@ -327,14 +338,17 @@ fn read_nodes(file: &SafeTensors<'_>, n: usize, model: &Model) -> Result<Vec<Nod
         Model::Reflectance => vec![[0.0; 3]; count],
         _ => triples(tensor(file, FLUORESCENCE, Dtype::F32, &[n, n, n, 3])?),
     };
-    let dyes = match model {
-        Model::Dyes(_) => tensor(file, DYE, Dtype::U8, &[n, n, n])?.to_vec(),
-        _ => vec![0; count],
+    let dyes = match model.dyes() {
+        None => vec![[0; 2]; count],
+        Some(_) if header.holds_pairs() => {
+            tensor(file, DYES, Dtype::U8, &[n, n, n, 2])?.as_chunks().0.to_vec()
+        }
+        Some(_) => tensor(file, DYE, Dtype::U8, &[n, n, n])?.iter().map(|&dye| [dye, 0]).collect(),
     };
     let numbers = reflectances.into_iter().zip(fluorescences).zip(dyes).zip(de2000);
-    let node = |(((reflectance, fluorescence), dye), de2000)| Node {
+    let node = |(((reflectance, fluorescence), dyes), de2000)| Node {
         reflectance,
-        dye,
+        dyes,
         fluorescence,
         de2000,
     };
@@ -355,7 +369,7 @@ mod tests {
         let model = Model::Dyes(DyeModel::new(set, DyeOptions::default()).unwrap());
         let node = |i: u16| Node {
             reflectance: [500.0 + f32::from(i), -0.5, 0.01],
-            dye: (i % 8) as u8,
+            dyes: [(i % 8) as u8, 0],
             fluorescence: [0.25, 0.5, 0.0],
             de2000: 0.125,
         };
@@ -395,14 +409,6 @@ mod tests {
         assert_eq!(back, cube);
         assert_eq!(back.contract().observer.name(), "glasses");
         assert_eq!(back.to_bytes(), bytes);
-    }
-
-    #[test]
-    fn only_a_cube_of_another_observer_is_of_the_second_version() {
-        assert!(cube().header_json().contains("\"format_version\":1,"));
-        let other = with_observer(|i, value| if i == 100 { 1.5 * value } else { value });
-        assert!(other.header_json().contains("\"format_version\":2,"));
-        assert!(other.header_json().contains("\"observer\""));
     }
 
     #[test]
@@ -453,14 +459,15 @@ mod tests {
         };
         assert_eq!(with_header(str::to_owned).unwrap(), cube());
         assert_eq!(
-            message("\"format_version\":1", "\"format_version\":3"),
-            "format version 3, expected 1 to 2"
+            message("\"format_version\":3", "\"format_version\":4"),
+            "format version 4, expected 1 to 3"
         );
         assert_eq!(
-            message("\"format_version\":1", "\"format_version\":2"),
-            "tensor observer is absent, expected F64 [3, 531]"
+            message("\"format_version\":3", "\"format_version\":2"),
+            "header field fit.preset is null, expected none in format version 2"
         );
-        assert!(message("CIE 1931 2°", "hawk").starts_with("header field observer is \"hawk\","));
+        assert!(message("\"relaxed\":false,", "").starts_with("header: missing field `relaxed`"));
+        assert!(message("\"preset\":null,", "").starts_with("header: missing field `preset`"));
         assert_eq!(
             message("\"resolution\":3", "\"resolution\":100000"),
             "resolution 100000, expected 2 to 256"

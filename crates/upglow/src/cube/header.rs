@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use upglow_color::{
     Adaptation, Contract, Grid, Illuminant, MeasuredDye, Observer, RgbSpace, Spectrum,
 };
@@ -13,17 +14,21 @@ use crate::cube::{Cube, FitRecord};
 use crate::material::analytic_model::AnalyticModel;
 use crate::material::dye_model::{DyeModel, DyeOptions};
 use crate::material::dye_set::DyeSet;
+use crate::material::film_model::FilmModel;
 use crate::material::model::Model;
 
 /// Name of the file's only metadata entry.
 pub(crate) const ENTRY: &str = "upglow";
 
-/// Versions of the file format that this program reads. It writes the lowest one that can hold the
-/// cube, so that older programs can read it.
-const FORMAT_VERSIONS: [u32; 2] = [1, WITH_OBSERVER];
+/// Versions of the file format that this program reads. It writes the last one.
+const FORMAT_VERSIONS: [u32; 3] = [1, WITH_OBSERVER, WITH_PAIRS];
 
 /// The first version that holds color-matching functions; before, they are CIE 1931 2°.
 const WITH_OBSERVER: u32 = 2;
+
+/// The first version that holds two numbers of dyes for a node and two slope limits; before, there are
+/// the first dye of a ring, and one hard limit for all reflectances.
+const WITH_PAIRS: u32 = 3;
 
 const FORMAT: &str = "upglow cube";
 
@@ -69,6 +74,12 @@ pub(crate) enum ModelHeader {
         quantum_yield: String,
         optical_density: Option<f64>,
     },
+    Film {
+        set: String,
+        dyes: Vec<DyeHeader>,
+        accounting: String,
+        quantum_yield: String,
+    },
     Analytic {
         absorption_fwhm_nm: f64,
         emission_fwhm_nm: f64,
@@ -95,11 +106,6 @@ pub(crate) struct StoredCurves {
     pub(crate) dyes: Vec<[Vec<f64>; 2]>,
 }
 
-/// Whether a cube's file must hold the color-matching functions.
-pub(crate) fn holds_observer(contract: &Contract) -> bool {
-    contract.observer != Observer::cie_1931_2deg()
-}
-
 const fn grid_numbers(grid: Grid) -> [u32; 3] {
     [grid.first_nm(), grid.last_nm(), grid.step_nm()]
 }
@@ -108,7 +114,7 @@ impl Header {
     pub(crate) fn of(cube: &Cube, tensors: Vec<String>) -> Self {
         Self {
             format: FORMAT.into(),
-            format_version: if holds_observer(cube.contract()) { WITH_OBSERVER } else { 1 },
+            format_version: WITH_PAIRS,
             upglow_version: env!("CARGO_PKG_VERSION").into(),
             resolution: cube.resolution(),
             axes: NODE_AXES.into(),
@@ -127,13 +133,26 @@ impl Header {
         }
         let version: Version = serde_json::from_str(json).map_err(ReadCubeError::Header)?;
         if !FORMAT_VERSIONS.contains(&version.format_version) {
-            let (found, newest) = (version.format_version, WITH_OBSERVER);
+            let (found, newest) = (version.format_version, WITH_PAIRS);
             return Err(ReadCubeError::Version { found, newest });
         }
         serde_json::from_str::<PlainJson<true>>(json).map_err(ReadCubeError::Header)?;
-        let header: Self = serde_json::from_str(json).map_err(ReadCubeError::Header)?;
+        let header: Result<Self, _> = if version.format_version >= WITH_PAIRS {
+            serde_json::from_str(json)
+        } else {
+            serde_json::from_value(with_one_limit(json, version.format_version)?)
+        };
+        let header = header.map_err(ReadCubeError::Header)?;
         ReadCubeError::check("format", header.format.as_str(), FORMAT)?;
         ReadCubeError::check("axes", header.axes.as_str(), NODE_AXES)?;
+        if header.model.is_film() && !header.holds_pairs() {
+            let expected = format!("another model in format version {}", header.format_version);
+            return Err(ReadCubeError::Field {
+                field: "model.kind",
+                found: "film".into(),
+                expected,
+            });
+        }
         Ok(header)
     }
 
@@ -141,6 +160,32 @@ impl Header {
     pub(crate) fn holds_observer(&self) -> bool {
         self.format_version >= WITH_OBSERVER
     }
+
+    /// Whether the file holds two numbers of dyes for each node.
+    pub(crate) fn holds_pairs(&self) -> bool {
+        self.format_version >= WITH_PAIRS
+    }
+}
+
+/// The header of an earlier version with the fields of `fit` that it did not have.
+fn with_one_limit(json: &str, version: u32) -> Result<Value, ReadCubeError> {
+    let mut header: Value = serde_json::from_str(json).map_err(ReadCubeError::Header)?;
+    let Some(fit) = header.get_mut("fit").and_then(Value::as_object_mut) else {
+        return Ok(header);
+    };
+    let limit = fit.get("slope_max_per_nm").cloned().unwrap_or_default();
+    let added = [
+        ("fit.preset", Value::Null),
+        ("fit.slope_under_dyes_per_nm", limit),
+        ("fit.relaxed", false.into()),
+    ];
+    for (field, value) in added {
+        if let Some(found) = fit.insert(field.trim_start_matches("fit.").into(), value) {
+            let expected = format!("none in format version {version}");
+            return Err(ReadCubeError::Field { field, found: found.to_string(), expected });
+        }
+    }
+    Ok(header)
 }
 
 impl ContractHeader {
@@ -196,6 +241,12 @@ impl ModelHeader {
         match model {
             Model::Reflectance => Self::Reflectance {},
             Model::Dyes(model) => Self::of_dyes(model),
+            Model::Film(model) => Self::Film {
+                set: model.dyes().set().name().into(),
+                dyes: DyeHeader::of_all(model.dyes()),
+                accounting: model.accounting().to_string(),
+                quantum_yield: model.quantum_yield().to_string(),
+            },
             Model::Analytic(model) => Self::Analytic {
                 absorption_fwhm_nm: model.absorption_fwhm_nm(),
                 emission_fwhm_nm: model.emission_fwhm_nm(),
@@ -207,14 +258,9 @@ impl ModelHeader {
 
     fn of_dyes(model: &DyeModel) -> Self {
         let DyeOptions { accounting, mixing, quantum_yield, optical_density } = model.options();
-        let dyes = model.set().dyes().iter().map(|dye| DyeHeader {
-            name: dye.name.clone(),
-            measured_quantum_yield: dye.quantum_yield,
-            provenance: dye.provenance.clone(),
-        });
         Self::Dyes {
             set: model.set().name().into(),
-            dyes: dyes.collect(),
+            dyes: DyeHeader::of_all(model),
             mixing: mixing.to_string(),
             accounting: accounting.to_string(),
             quantum_yield: quantum_yield.to_string(),
@@ -225,9 +271,14 @@ impl ModelHeader {
     /// How many dyes the model names.
     pub(crate) fn dye_count(&self) -> usize {
         match self {
-            Self::Dyes { dyes, .. } => dyes.len(),
+            Self::Dyes { dyes, .. } | Self::Film { dyes, .. } => dyes.len(),
             _ => 0,
         }
+    }
+
+    /// Whether nodes name two dyes each.
+    pub(crate) fn is_film(&self) -> bool {
+        matches!(self, Self::Film { .. })
     }
 
     /// Whether nodes have numbers of fluorescence.
@@ -239,9 +290,7 @@ impl ModelHeader {
         match self {
             Self::Reflectance {} => Ok(Model::Reflectance),
             Self::Dyes { set, dyes, mixing, accounting, quantum_yield, optical_density } => {
-                let dyes = dyes.iter().zip(curves).map(|(dye, curves)| dye.to_dye(curves));
-                let dyes = dyes.collect::<Result<Vec<_>, _>>()?;
-                let set = DyeSet::new(set, dyes).map_err(ReadCubeError::value("dyes"))?;
+                let set = DyeHeader::to_set(dyes, set, curves)?;
                 let options = DyeOptions {
                     accounting: parse_field("accounting", accounting)?,
                     mixing: parse_field("mixing", mixing)?,
@@ -249,6 +298,13 @@ impl ModelHeader {
                     optical_density: *optical_density,
                 };
                 DyeModel::new(set, options).map(Model::Dyes).map_err(ReadCubeError::value("model"))
+            }
+            Self::Film { set, dyes, accounting, quantum_yield } => {
+                let set = DyeHeader::to_set(dyes, set, curves)?;
+                let accounting = parse_field("accounting", accounting)?;
+                FilmModel::new(set, accounting, parse_field("quantum_yield", quantum_yield)?)
+                    .map(Model::Film)
+                    .map_err(ReadCubeError::value("model"))
             }
             Self::Analytic { absorption_fwhm_nm, emission_fwhm_nm, accounting, quantum_yield } => {
                 let widths_nm = [*absorption_fwhm_nm, *emission_fwhm_nm];
@@ -262,6 +318,26 @@ impl ModelHeader {
 }
 
 impl DyeHeader {
+    fn of_all(model: &DyeModel) -> Vec<Self> {
+        let of = |dye: &MeasuredDye| Self {
+            name: dye.name.clone(),
+            measured_quantum_yield: dye.quantum_yield,
+            provenance: dye.provenance.clone(),
+        };
+        model.set().dyes().iter().map(of).collect()
+    }
+
+    /// The set of these dyes with their curves.
+    fn to_set(
+        dyes: &[Self],
+        name: &str,
+        curves: Vec<[Vec<f64>; 2]>,
+    ) -> Result<DyeSet, ReadCubeError> {
+        let dyes = dyes.iter().zip(curves).map(|(dye, curves)| dye.to_dye(curves));
+        let dyes = dyes.collect::<Result<Vec<_>, _>>()?;
+        DyeSet::new(name, dyes).map_err(ReadCubeError::value("dyes"))
+    }
+
     fn to_dye(&self, curves: [Vec<f64>; 2]) -> Result<MeasuredDye, ReadCubeError> {
         let [absorption, emission] = curves.map(|values| {
             Spectrum::new(Grid::FINE, values).map_err(ReadCubeError::value("dye curves"))

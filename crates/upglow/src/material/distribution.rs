@@ -56,6 +56,22 @@ impl Distribution {
         distribution
     }
 
+    /// The curve on its grid.
+    pub(crate) fn densities(&self) -> &[f64] {
+        &self.density
+    }
+
+    /// The curve at a wavelength.
+    pub(crate) fn at(&self, nm: f64) -> f64 {
+        let position = (nm - self.first_nm) / self.step_nm;
+        if !(0.0..=(self.density.len() - 1) as f64).contains(&position) {
+            return 0.0;
+        }
+        let (bin, t) = self.bin(nm);
+        let (low, rise) = self.line(bin);
+        low + t * rise
+    }
+
     /// ∫ curve dλ, nm times the curve's unit.
     pub(crate) fn total(&self) -> f64 {
         self.area[self.area.len() - 1]

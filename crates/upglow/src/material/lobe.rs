@@ -2,8 +2,10 @@
 
 use crate::material::Fluorescence;
 use crate::material::bell::Bell;
+use crate::material::distribution::Distribution;
 use crate::material::dye_model::{DyeCurves, DyeModel, DyeOptions};
-use crate::material::formula::{Accounting, Mixing};
+use crate::material::film_model::{FilmModel, LEVELS, level_shares};
+use crate::material::formula::{Accounting, Film, Mixing};
 use crate::material::model::Model;
 use crate::material::sampling::ratio;
 
@@ -26,6 +28,13 @@ enum Spectra<'m> {
         mixing: Mixing,
         lobe: usize,
     },
+    /// The dye that is number `lobe` of a film's two.
+    Film {
+        model: &'m FilmModel,
+        dyes: [usize; 2],
+        film: Film<f64>,
+        lobe: usize,
+    },
     Bells {
         absorption: Bell,
         emission: Bell,
@@ -38,6 +47,9 @@ impl Fluorescence {
         let [first, second] = match (self, model) {
             (Self::Dyes { first, weight, concentration }, Model::Dyes(model)) => {
                 dye_lobes(model, first, weight, concentration)
+            }
+            (Self::Film { dyes, densities }, Model::Film(model)) => {
+                film_lobes(model, dyes, densities)
             }
             (
                 Self::Analytic { emission_peak_nm, stokes_shift_nm, concentration },
@@ -81,6 +93,15 @@ fn dye_lobes(
     })
 }
 
+fn film_lobes(model: &FilmModel, dyes: [usize; 2], densities: [f64; 2]) -> [Option<Lobe<'_>>; 2] {
+    [0, 1].map(|lobe| {
+        let DyeCurves { quantum_yield, mean_emission_nm, .. } = model.dyes().curves()[dyes[lobe]];
+        let spectra = Spectra::Film { model, dyes, film: Film { densities }, lobe };
+        let (accounting, concentration) = (model.accounting(), 1.0);
+        Some(Lobe { accounting, quantum_yield, mean_emission_nm, concentration, spectra })
+    })
+}
+
 impl Lobe<'_> {
     /// Share of incident light at `lambda_nm` that the lobe absorbs.
     pub(crate) fn absorbed(&self, lambda_nm: f64) -> f64 {
@@ -88,6 +109,10 @@ impl Lobe<'_> {
             Spectra::Dyes { dyes, weight, mixing, lobe } => {
                 let absorptions = dyes.map(|dye| dye.absorption.at(lambda_nm));
                 mixing.absorbed(absorptions, self.concentration, weight)[lobe]
+            }
+            Spectra::Film { model, dyes, film, lobe } => {
+                let curves = model.dyes().curves();
+                film.absorbed(dyes.map(|dye| curves[dye].absorption.at(lambda_nm)))[lobe]
             }
             Spectra::Bells { absorption, .. } => {
                 self.concentration * absorption.peak_one(lambda_nm).0
@@ -104,7 +129,9 @@ impl Lobe<'_> {
     /// The emission as a density of unit area, 1/nm.
     pub(crate) fn emission(&self, lambda_nm: f64) -> f64 {
         match self.spectra {
-            Spectra::Dyes { .. } => self.of_dyes(|dye| dye.emission.at(lambda_nm)),
+            Spectra::Dyes { .. } | Spectra::Film { .. } => {
+                self.of_dyes(|dye| dye.emission.at(lambda_nm))
+            }
             Spectra::Bells { emission, .. } => emission.area_one(lambda_nm).0,
         }
     }
@@ -112,7 +139,9 @@ impl Lobe<'_> {
     /// The area of the emission between two wavelengths, 0..=1.
     pub(crate) fn emission_between(&self, from_nm: f64, to_nm: f64) -> f64 {
         match self.spectra {
-            Spectra::Dyes { .. } => self.of_dyes(|dye| dye.emission.area(from_nm, to_nm)),
+            Spectra::Dyes { .. } | Spectra::Film { .. } => {
+                self.of_dyes(|dye| dye.emission.area(from_nm, to_nm))
+            }
             Spectra::Bells { emission, .. } => emission.area_between(from_nm, to_nm),
         }
     }
@@ -120,14 +149,26 @@ impl Lobe<'_> {
     /// ∫ ê dλ: below 1 where a measured emission does not fall to zero within its table.
     pub(crate) fn emitted_total(&self) -> f64 {
         match self.spectra {
-            Spectra::Dyes { .. } => self.of_dyes(|dye| dye.emitting.total()),
+            Spectra::Dyes { .. } | Spectra::Film { .. } => self.of_dyes(|dye| dye.emitting.total()),
             Spectra::Bells { .. } => 1.0,
         }
     }
 
-    /// ∫ returned dλ over incident wavelengths, nm.
-    pub(crate) fn returned_total_nm(&self) -> f64 {
+    /// The curve, over incident wavelengths, that [`Lobe::sample_incident`] draws from. It is what the
+    /// lobe returns; in a film, what its dye would return without the other one, from a table.
+    pub(crate) fn proposed(&self, in_nm: f64) -> f64 {
+        match self.spectra {
+            Spectra::Film { .. } => {
+                self.quantum_yield * self.of_levels(|level| level.at(in_nm)).iter().sum::<f64>()
+            }
+            Spectra::Dyes { .. } | Spectra::Bells { .. } => self.returned(in_nm),
+        }
+    }
+
+    /// ∫ proposed dλ over incident wavelengths, nm.
+    pub(crate) fn proposed_total_nm(&self) -> f64 {
         let (concentration, area) = match self.spectra {
+            Spectra::Film { .. } => (1.0, self.of_levels(Distribution::total).iter().sum()),
             Spectra::Dyes { weight, mixing, lobe, .. } => {
                 let concentrations = mixing.concentrations(self.concentration, weight);
                 let [one, two] = self.areas(|dye| self.shared_total(dye));
@@ -147,12 +188,16 @@ impl Lobe<'_> {
         concentration * self.quantum_yield * area
     }
 
-    /// An incident wavelength with the density of what is returned, from `u` in 0..1.
-    pub(crate) fn sample_absorbed(&self, u: f64) -> f64 {
+    /// An incident wavelength with the density of [`Lobe::proposed`], from `u` in 0..1.
+    pub(crate) fn sample_incident(&self, u: f64) -> f64 {
         match self.spectra {
+            Spectra::Film { model, dyes, lobe, .. } => {
+                let (level, u) = pick(self.of_levels(Distribution::total), u);
+                model.proposals(dyes[lobe])[level].sample(u)
+            }
             Spectra::Dyes { dyes, .. } => {
-                let (dye, u) = pick(dyes, self.areas(|dye| self.shared_total(dye)), u);
-                dye.absorbing.sample_shared(self.accounting, self.mean_emission_nm, u)
+                let (dye, u) = pick(self.areas(|dye| self.shared_total(dye)), u);
+                dyes[dye].absorbing.sample_shared(self.accounting, self.mean_emission_nm, u)
             }
             Spectra::Bells { absorption, .. } => match self.accounting {
                 Accounting::Energy => absorption.quantile(u),
@@ -165,8 +210,11 @@ impl Lobe<'_> {
     pub(crate) fn sample_emitted(&self, u: f64) -> f64 {
         match self.spectra {
             Spectra::Dyes { dyes, .. } => {
-                let (dye, u) = pick(dyes, self.areas(|dye| dye.emitting.total()), u);
-                dye.emitting.sample(u)
+                let (dye, u) = pick(self.areas(|dye| dye.emitting.total()), u);
+                dyes[dye].emitting.sample(u)
+            }
+            Spectra::Film { model, dyes, lobe, .. } => {
+                model.dyes().curves()[dyes[lobe]].emitting.sample(u)
             }
             Spectra::Bells { emission, .. } => emission.quantile(u),
         }
@@ -183,28 +231,43 @@ impl Lobe<'_> {
             Spectra::Dyes { dyes, weight, mixing, lobe } => {
                 mixing.per_lobe(dyes.map(number), weight)[lobe]
             }
+            Spectra::Film { model, dyes, lobe, .. } => number(&model.dyes().curves()[dyes[lobe]]),
             Spectra::Bells { .. } => 0.0,
         }
     }
 
-    /// The parts that the two dyes have in the area of one of the lobe's curves; zeros for bells.
+    /// The parts that two mixed dyes have in the area of one of the lobe's curves; zeros for others.
     fn areas(&self, area: impl Fn(&DyeCurves) -> f64) -> [f64; 2] {
         match self.spectra {
             Spectra::Dyes { dyes, weight, mixing, lobe } => {
                 let [one, two] = mixing.shares_of_dyes(lobe, weight);
                 [one * area(dyes[0]), two * area(dyes[1])]
             }
-            Spectra::Bells { .. } => [0.0; 2],
+            Spectra::Film { .. } | Spectra::Bells { .. } => [0.0; 2],
         }
+    }
+
+    /// A number of each level of a film's dye, times the level's share; zeros for other lobes.
+    fn of_levels(&self, number: impl Fn(&Distribution) -> f64) -> [f64; LEVELS.len()] {
+        let Spectra::Film { model, dyes, film, lobe } = self.spectra else {
+            return [0.0; LEVELS.len()];
+        };
+        let mut numbers = level_shares(film.densities[lobe]);
+        let levels = model.proposals(dyes[lobe]);
+        numbers.iter_mut().zip(levels).for_each(|(share, level)| *share *= number(level));
+        numbers
     }
 }
 
-/// One of two dyes in proportion to `areas`, and what is left of `u` to draw from it.
-fn pick([first, second]: [&DyeCurves; 2], areas: [f64; 2], u: f64) -> (&DyeCurves, f64) {
-    let target = u * (areas[0] + areas[1]);
-    if target < areas[0] || areas[1] <= 0.0 {
-        (first, ratio(target, areas[0]))
-    } else {
-        (second, (target - areas[0]) / areas[1])
+/// The index of one of `areas` in proportion to them, and what is left of `u` to draw from it.
+fn pick<const N: usize>(areas: [f64; N], u: f64) -> (usize, f64) {
+    let mut rest = u * areas.iter().sum::<f64>();
+    let last = areas.iter().rposition(|area| *area > 0.0).unwrap_or(0);
+    for (index, area) in areas.into_iter().enumerate().take(last) {
+        if rest < area {
+            return (index, rest / area);
+        }
+        rest -= area;
     }
+    (last, ratio(rest, areas[last]))
 }

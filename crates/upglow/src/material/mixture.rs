@@ -7,7 +7,7 @@ use crate::material::Material;
 use crate::material::lobe::Lobe;
 use crate::material::model::Model;
 use crate::material::model_on_grid::ModelOnGrid;
-use crate::material::sampling::{Shares, ratio};
+use crate::material::sampling::{Shares, Shifted, ratio};
 
 /// A convex mixture of up to four materials of one model.
 ///
@@ -89,9 +89,15 @@ impl<'m> Mixture<'m> {
         })
     }
 
-    /// What leaves at `out_nm` under an equal-energy light of unit irradiance.
+    /// The curves that incident wavelengths are drawn from, for light that leaves at `out_nm`, 1/nm.
+    fn proposed_per_nm(&self, in_nm: f64, out_nm: f64) -> f64 {
+        self.lobes().map(|(w, lobe)| w * lobe.proposed(in_nm) * lobe.emission(out_nm)).sum()
+    }
+
+    /// What leaves at `out_nm` under an equal-energy light of unit irradiance, as far as the curves
+    /// that wavelengths are drawn from tell.
     fn shares_leaving(&self, out_nm: f64) -> Shares<Lobe<'m>> {
-        self.shares(out_nm, |lobe| lobe.emission(out_nm) * lobe.returned_total_nm())
+        self.shares(out_nm, |lobe| lobe.emission(out_nm) * lobe.proposed_total_nm())
     }
 
     /// What leaves of unit light at `in_nm`.
@@ -109,7 +115,7 @@ impl Bispectral for Mixture<'_> {
     type Real = f64;
 
     fn is_fluorescent(&self) -> bool {
-        self.parts().any(|(_, material)| material.fluorescence.concentration() > 0.0)
+        self.parts().any(|(_, material)| material.fluorescence.dose() > 0.0)
     }
 
     fn reflectance(&self, lambda_nm: f64) -> f64 {
@@ -133,13 +139,18 @@ impl Bispectral for Mixture<'_> {
 
     fn sample_incident(&self, out_nm: f64, u: [f64; 2]) -> Option<Sample<f64>> {
         self.shares_leaving(out_nm).sample(out_nm, u, |lobe, u| {
-            let in_nm = lobe.sample_absorbed(u);
-            (in_nm, self.reradiation_per_nm(in_nm, out_nm))
+            let in_nm = lobe.sample_incident(u);
+            let drawn_per_nm = self.proposed_per_nm(in_nm, out_nm);
+            Shifted {
+                nm: in_nm,
+                carried_per_nm: self.reradiation_per_nm(in_nm, out_nm),
+                drawn_per_nm,
+            }
         })
     }
 
     fn incident_pdf_per_nm(&self, in_nm: f64, out_nm: f64) -> f64 {
-        ratio(self.reradiation_per_nm(in_nm, out_nm), self.shares_leaving(out_nm).total())
+        ratio(self.proposed_per_nm(in_nm, out_nm), self.shares_leaving(out_nm).total())
     }
 
     fn incident_elastic_probability(&self, out_nm: f64) -> f64 {
@@ -149,7 +160,8 @@ impl Bispectral for Mixture<'_> {
     fn sample_outgoing(&self, in_nm: f64, u: [f64; 2]) -> Option<Sample<f64>> {
         self.shares_arriving(in_nm).sample(in_nm, u, |lobe, u| {
             let out_nm = lobe.sample_emitted(u);
-            (out_nm, self.reradiation_per_nm(in_nm, out_nm))
+            let carried_per_nm = self.reradiation_per_nm(in_nm, out_nm);
+            Shifted { nm: out_nm, carried_per_nm, drawn_per_nm: carried_per_nm }
         })
     }
 
@@ -165,28 +177,10 @@ impl Bispectral for Mixture<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::random::models;
     use crate::*;
     use proptest::prelude::*;
     use upglow_color::Contract;
-
-    fn models() -> Vec<Model> {
-        let mut models = vec![
-            Model::Reflectance,
-            Model::Analytic(AnalyticModel::default()),
-            Model::Analytic(AnalyticModel::new(30.0, 60.0, Accounting::Photon, 0.7).unwrap()),
-        ];
-        for accounting in [Accounting::Energy, Accounting::Photon] {
-            for mixing in [Mixing::Pooled, Mixing::Separate] {
-                for optical_density in [None, Some(4.0)] {
-                    let quantum_yield = QuantumYield::Measured;
-                    let options = DyeOptions { accounting, mixing, quantum_yield, optical_density };
-                    let set = DyeSet::named("konig8").unwrap();
-                    models.push(Model::Dyes(DyeModel::new(set, options).unwrap()));
-                }
-            }
-        }
-        models
-    }
 
     fn material(model: &Model, u: [f64; 6]) -> Material {
         let features = Features {
@@ -201,6 +195,10 @@ mod tests {
                 weight: u[4],
                 concentration: u[5],
             },
+            Model::Film(_) => {
+                let dye = |u: f64| (0..8).rev().find(|&i| i as f64 <= 8.0 * u).unwrap_or(0);
+                Fluorescence::film((dye(u[3]), 6.0 * u[4].powi(3)), (dye(u[0]), 6.0 * u[5]))
+            }
             Model::Analytic(_) => Fluorescence::Analytic {
                 emission_peak_nm: 400.0 + 310.0 * u[3],
                 stokes_shift_nm: 10.0 + 110.0 * u[4],

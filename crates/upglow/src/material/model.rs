@@ -1,7 +1,9 @@
 //! What fluorescence is made of: measured dyes, or bells by formula.
 
 use crate::material::analytic_model::AnalyticModel;
-use crate::material::dye_model::DyeModel;
+use crate::material::dye_model::{DyeModel, QuantumYield};
+use crate::material::film_model::FilmModel;
+use crate::material::formula::Accounting;
 
 /// How the fluorescence of a material is described, and by what rules it re-emits light.
 ///
@@ -14,17 +16,49 @@ pub enum Model {
     Reflectance,
     /// Two neighbors of a ring of measured dyes.
     Dyes(DyeModel),
+    /// Any two of a set of measured dyes, each at an optical density of its own.
+    Film(FilmModel),
     /// Absorption and emission by formula.
     Analytic(AnalyticModel),
 }
 
 impl Model {
-    /// The name that files and options use: `reflectance`, `dyes` or `analytic`.
+    /// The name that files and options use: `reflectance`, `dyes`, `film` or `analytic`.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Reflectance => "reflectance",
             Self::Dyes(_) => "dyes",
+            Self::Film(_) => "film",
             Self::Analytic(_) => "analytic",
+        }
+    }
+
+    /// The measured dyes, if it has any.
+    pub fn dyes(&self) -> Option<&DyeModel> {
+        match self {
+            Self::Dyes(dyes) => Some(dyes),
+            Self::Film(film) => Some(film.dyes()),
+            Self::Reflectance | Self::Analytic(_) => None,
+        }
+    }
+
+    /// What is conserved when absorbed light is re-emitted, if any is.
+    pub fn accounting(&self) -> Option<Accounting> {
+        match self {
+            Self::Reflectance => None,
+            Self::Analytic(bells) => Some(bells.accounting()),
+            Self::Dyes(dyes) => Some(dyes.options().accounting),
+            Self::Film(film) => Some(film.accounting()),
+        }
+    }
+
+    /// The share of absorbed light that is re-emitted, if any is.
+    pub fn quantum_yield(&self) -> Option<QuantumYield> {
+        match self {
+            Self::Reflectance => None,
+            Self::Analytic(bells) => Some(QuantumYield::Fixed(bells.quantum_yield())),
+            Self::Dyes(dyes) => Some(dyes.options().quantum_yield),
+            Self::Film(film) => Some(film.quantum_yield()),
         }
     }
 }

@@ -1,13 +1,24 @@
 //! Choosing between the reflection of a mixture and its fluorescent lobes.
 //!
 //! Both directions choose between the elastic part, which keeps the wavelength, and the lobes in
-//! proportion to the light that each contributes, and then draw from the chosen lobe exactly. Every
-//! sample then has the same throughput:
+//! proportion to the light that each contributes, and then draw from the chosen lobe:
 //!
-//! - from the camera, W(λo) = r(λo) + Σ ê(λo)·∫ returned(λ) dλ;
+//! - from the camera, W(λo) = r(λo) + Σ ê(λo)·∫ proposed(λ) dλ;
 //! - from the light, W(λi) = r(λi) + Σ returned(λi), the albedo.
+//!
+//! Where a lobe proposes what it returns, every sample has the throughput W. In a film it proposes
+//! what its dye would return alone, from a table, and the throughput is W·returned / proposed.
 
 use crate::bispectral::{Draw, Sample};
+
+/// A wavelength drawn from a lobe, with sums over all lobes between that and the known one.
+pub(crate) struct Shifted {
+    pub(crate) nm: f64,
+    /// The re-radiation, 1/nm.
+    pub(crate) carried_per_nm: f64,
+    /// The curves that the wavelength was drawn from, 1/nm; their area is the lobes' part of W.
+    pub(crate) drawn_per_nm: f64,
+}
 
 /// The contributions of reflection and of each fluorescent lobe `L` at one wavelength.
 pub(crate) struct Shares<L> {
@@ -49,27 +60,26 @@ impl<L: Copy> Shares<L> {
         ratio(self.elastic, self.total())
     }
 
-    /// Draws from one of the parts by two numbers in 0..1. `draw` gives a wavelength from a lobe and
-    /// the re-radiation between that and the known one.
+    /// Draws from one of the parts by two numbers in 0..1. `draw` gives a wavelength from a lobe.
     pub(crate) fn sample(
         &self,
         known_nm: f64,
         [choice, u]: [f64; 2],
-        draw: impl Fn(L, f64) -> (f64, f64),
+        draw: impl Fn(L, f64) -> Shifted,
     ) -> Option<Sample<f64>> {
-        let throughput = self.total();
-        if throughput <= 0.0 {
+        let whole = self.total();
+        if whole <= 0.0 {
             return None;
         }
         Some(match self.choose(choice) {
             None => {
-                let probability = self.elastic / throughput;
-                Sample { nm: known_nm, throughput, draw: Draw::Elastic { probability } }
+                let draw = Draw::Elastic { probability: self.elastic / whole };
+                Sample { nm: known_nm, throughput: whole, draw }
             }
             Some(lobe) => {
-                let (nm, reradiation_per_nm) = draw(lobe, u);
-                let per_nm = reradiation_per_nm / throughput;
-                Sample { nm, throughput, draw: Draw::Fluorescent { per_nm } }
+                let Shifted { nm, carried_per_nm, drawn_per_nm } = draw(lobe, u);
+                let throughput = whole * ratio(carried_per_nm, drawn_per_nm);
+                Sample { nm, throughput, draw: Draw::Fluorescent { per_nm: drawn_per_nm / whole } }
             }
         })
     }

@@ -7,6 +7,7 @@ use upglow_color::rounding::to_single;
 
 use crate::material::dye_model::{DyeCurves, DyeModel};
 use crate::material::model::Model;
+use crate::packed::proposal_table::ProposalTable;
 use crate::packed::quantile_table::{BINS, FIRST_NM, QuantileTable};
 use crate::packed::vector::{smaller_of, transposed, whole};
 
@@ -24,6 +25,8 @@ pub(crate) struct CurveTable {
     pub(crate) emission: PairedCurves,
     pub(crate) absorbing: QuantileTable,
     pub(crate) emitting: QuantileTable,
+    /// What a dye of a film is drawn from.
+    pub(crate) proposals: ProposalTable,
     /// `[dye]`, the first again after the last.
     dyes: Vec<DyeNumbers>,
     /// Numbers per wavelength.
@@ -52,8 +55,9 @@ pub(crate) struct DyeNumbers {
 /// Where the curves of a wavelength are in a [`CurveTable`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Row {
+    pub(crate) below: u32,
     start: u32,
-    fraction: f32,
+    pub(crate) fraction: f32,
 }
 
 /// Where the curves of four wavelengths are in a [`CurveTable`].
@@ -65,7 +69,11 @@ pub(crate) struct Rows<S: Simd> {
 
 impl CurveTable {
     pub(crate) fn new(model: &Model) -> Self {
-        let Model::Dyes(model) = model else { return Self::default() };
+        let proposals = match model {
+            Model::Film(film) => ProposalTable::new(film),
+            _ => ProposalTable::default(),
+        };
+        let Some(model) = model.dyes() else { return Self::default() };
         let curves = model.curves();
         let ring = curves.len() + 1;
         let dyes = || curves.iter().cycle().take(ring);
@@ -81,8 +89,9 @@ impl CurveTable {
         Self {
             absorption: rows(|dye| &dye.absorption),
             emission: rows(|dye| &dye.emission),
-            absorbing: QuantileTable::new(dyes().map(|dye| &dye.absorption)),
-            emitting: QuantileTable::new(dyes().map(|dye| &dye.emission)),
+            absorbing: QuantileTable::new(dyes().map(|dye| dye.absorption.values())),
+            emitting: QuantileTable::new(dyes().map(|dye| dye.emission.values())),
+            proposals,
             dyes: dyes().map(|dye| DyeNumbers::new(model, dye)).collect(),
             stride: u32::try_from(2 * ring).expect("a set has far fewer than 2³¹ dyes"),
         }
@@ -94,7 +103,7 @@ impl CurveTable {
         let inside = (FIRST_NM..=LAST_NM).contains(&nm);
         let place = if inside { smaller_of(nm - FIRST_NM, LAST_PLACE) } else { BINS as f32 };
         let below = whole(simd, place);
-        Row { start: below * self.stride, fraction: place - below as f32 }
+        Row { below, start: below * self.stride, fraction: place - below as f32 }
     }
 
     /// Where the curves of four wavelengths are.
@@ -113,12 +122,10 @@ impl CurveTable {
         Rows { start, fraction }
     }
 
-    /// Dye number `dye` and its neighbor.
+    /// The numbers of two dyes.
     #[inline(always)]
-    pub(crate) fn pair(&self, dye: u32) -> [&DyeNumbers; 2] {
-        let dye = dye as usize;
-        let pair = &self.dyes[dye..dye + 2];
-        [&pair[0], &pair[1]]
+    pub(crate) fn pair(&self, [first, second]: [u32; 2]) -> [&DyeNumbers; 2] {
+        [&self.dyes[first as usize], &self.dyes[second as usize]]
     }
 }
 
@@ -138,11 +145,23 @@ impl PairedCurves {
         &self.0[place..place + 4]
     }
 
-    /// The curves of a dye and of its neighbor.
+    /// The curves of two dyes.
     #[inline(always)]
-    pub(crate) fn pair(&self, row: Row, dye: u32) -> [f32; 2] {
-        let numbers = self.four(row.start, dye);
-        [numbers[0] + row.fraction * numbers[1], numbers[2] + row.fraction * numbers[3]]
+    pub(crate) fn pair(&self, row: Row, dyes: [u32; 2]) -> [f32; 2] {
+        let mut pair = [0.0; 2];
+        for k in 0..2 {
+            let place = (row.start + 2 * dyes[k]) as usize;
+            let numbers = &self.0[place..place + 2];
+            pair[k] = numbers[0] + row.fraction * numbers[1];
+        }
+        pair
+    }
+
+    /// The curves of four dyes, each at a wavelength of its own.
+    #[inline(always)]
+    pub(crate) fn four_of<S: Simd>(&self, simd: S, rows: Rows<S>, dyes: [u32; 4]) -> f32x4<S> {
+        let [sample, _] = self.pairs(simd, rows, dyes);
+        sample
     }
 
     /// The curves of four dyes and of their neighbors, each at a wavelength of its own.

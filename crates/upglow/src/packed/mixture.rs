@@ -5,12 +5,12 @@ use fearless_simd::{Simd, dispatch, f32x4, f32x8, i32x4};
 use upglow_color::rounding::to_single;
 
 use crate::bispectral::{Bispectral, Sample};
-use crate::material::formula::{Accounting, Mixing, PerLobe};
+use crate::material::formula::{Accounting, Film, Mixing, PerLobe};
 use crate::material::model::Model;
-use crate::packed::curve_table::{DyeNumbers, PairedCurves};
+use crate::packed::curve_table::{DyeNumbers, PairedCurves, Rows};
 use crate::packed::inverse_root::{twice_inverse_root, twice_inverse_root8};
-use crate::packed::model::PackedModel;
-use crate::packed::node::{PackedBells, PackedDyes, PackedNode, PackedReflectance};
+use crate::packed::model::{PackedModel, Rule};
+use crate::packed::node::{PackedBells, PackedDyes, PackedFilm, PackedNode, PackedReflectance};
 use crate::packed::sampling::{ChosenLobe, DrawnLobe, Shares, elastic, ratio, shifted};
 use crate::packed::vector::{greater_of, load, sum, sums, transposed, whole, with_baseline};
 
@@ -25,14 +25,14 @@ pub struct PackedMixture<'t> {
     model: &'t PackedModel,
     /// Whether any of the four fluoresces.
     fluorescent: bool,
-    /// The first dye of all corners that fluoresce, if it is the same: their curves are then read
-    /// once.
-    common_dye: Option<u32>,
+    /// The dyes of all corners that fluoresce, if they are the same: their curves are then read once.
+    common_dyes: Option<[u32; 2]>,
     weights: [f32; 4],
     edge_nm: [f32; 4],
     /// Coefficients of 1, d and d², `[coefficient][corner]`.
     parabola: [[f32; 4]; 3],
-    /// [`PackedNode::fluorescence`], `[number][corner]`; read as [`PackedDyes`] or [`PackedBells`].
+    /// [`PackedNode::fluorescence`], `[number][corner]`; read as [`PackedDyes`],
+    /// [`PackedFilm`] or [`PackedBells`].
     fluorescence: [[f32; 4]; 4],
 }
 
@@ -50,17 +50,21 @@ macro_rules! in_vectors {
     };
 }
 
-/// [`with_baseline`] with the mixing as a constant, so that each mixing is compiled separately.
-/// Chosen inside, it costs up to 7 % of an evaluation.
+/// [`with_baseline`] with the rule as a constant, so that each rule is compiled separately. Chosen
+/// inside, it costs up to 7 % of an evaluation.
 macro_rules! with_rules {
-    ($mixture:ident, $simd:ident, $mixing:ident => $answer:expr) => {
-        with_baseline!($simd => match $mixture.model.mixing {
-            Mixing::Pooled => {
-                let $mixing = Mixing::Pooled;
+    ($mixture:ident, $simd:ident, $rule:ident => $answer:expr) => {
+        with_baseline!($simd => match $mixture.model.rule {
+            Rule::Ring(Mixing::Pooled) => {
+                let $rule = Rule::Ring(Mixing::Pooled);
                 $answer
             }
-            Mixing::Separate => {
-                let $mixing = Mixing::Separate;
+            Rule::Ring(Mixing::Separate) => {
+                let $rule = Rule::Ring(Mixing::Separate);
+                $answer
+            }
+            Rule::Film => {
+                let $rule = Rule::Film;
                 $answer
             }
         })
@@ -79,12 +83,18 @@ impl<'t> PackedMixture<'t> {
         let PackedReflectance { edge_nm, constant, linear, quadratic } =
             transposed(nodes.map(|node| load(simd, &node.reflectance))).into();
         let fluorescence = transposed(nodes.map(|node| load(simd, &node.fluorescence)));
-        // With bells the common dye is meaningless, and never read.
-        let PackedDyes { weight, concentration, returned_nm, first } = fluorescence.into();
+        // The second number of every model is above 0 where a corner fluoresces. With bells the common
+        // dyes are meaningless, and never read.
+        let [weight, concentration, returned_nm, first] = fluorescence;
+        let common = |number| common_number(simd, concentration, number);
+        let common_dyes = match model.rule {
+            Rule::Ring(_) => common(first).map(|first| [first, first + 1]),
+            Rule::Film => common(first).zip(common(returned_nm)).map(Into::into),
+        };
         Self {
             model,
             fluorescent: concentration.simd_gt(0.0).any_true(),
-            common_dye: common_dye(simd, concentration, first),
+            common_dyes,
             weights,
             edge_nm: edge_nm.into(),
             parabola: [constant.into(), linear.into(), quadratic.into()],
@@ -223,25 +233,26 @@ impl<'t> PackedMixture<'t> {
         let mut passed = [all; 4];
         match &self.model.model {
             Model::Reflectance => {}
-            Model::Dyes(_) => {
+            Model::Dyes(dyes) => {
+                let mixing = dyes.options().mixing;
                 let PackedDyes { weight, concentration, .. } = self.fluorescence.into();
                 let curves = &self.model.curves;
                 let rows = curves.rows(simd, nm);
                 let mut pair = [all; 2];
-                if let Some(dye) = self.common_dye {
+                if let Some([dye, _]) = self.common_dyes {
                     pair = curves.absorption.pairs(simd, rows, [dye; 4]);
                 }
-                let dyes = self.dyes(simd);
+                let [dyes, _] = self.dyes(simd);
                 for i in 0..4 {
-                    if self.common_dye.is_none() {
+                    if self.common_dyes.is_none() {
                         pair = curves.absorption.pairs(simd, rows, [dyes[i]; 4]);
                     }
                     let concentration = f32x4::splat(simd, concentration[i]);
                     let weight = f32x4::splat(simd, weight[i]);
-                    passed[i] =
-                        all - self.model.mixing.absorbed_in_all(pair, concentration, weight);
+                    passed[i] = all - mixing.absorbed_in_all(pair, concentration, weight);
                 }
             }
+            Model::Film(_) => self.passed_by_films(simd, nm, &mut passed),
             Model::Analytic(_) => {
                 let PackedBells { concentration, absorption_nm, .. } = self.fluorescence.into();
                 let bells = self.model.absorption_bells;
@@ -252,6 +263,46 @@ impl<'t> PackedMixture<'t> {
             }
         }
         passed
+    }
+
+    /// What the film of each corner that fluoresces lets pass, `[corner]`.
+    #[inline(always)]
+    fn passed_by_films<S: Simd>(&self, simd: S, nm: f32x4<S>, passed: &mut [f32x4<S>; 4]) {
+        let PackedFilm { second_density, first_density, .. } = self.fluorescence.into();
+        let curves = &self.model.curves;
+        let rows = curves.rows(simd, nm);
+        let pair_of = |[first, second]: [u32; 2]| {
+            [first, second].map(|dye| curves.absorption.four_of(simd, rows, [dye; 4]))
+        };
+        let common = self.common_dyes.map(pair_of);
+        let [first, second] = self.dyes(simd);
+        for i in 0..4 {
+            if first_density[i] > 0.0 {
+                let pair = common.unwrap_or_else(|| pair_of([first[i], second[i]]));
+                let densities = [first_density[i], second_density[i]];
+                passed[i] =
+                    Film { densities: densities.map(|d| f32x4::splat(simd, d)) }.passed(pair);
+            }
+        }
+    }
+
+    /// The film of each corner.
+    #[inline(always)]
+    fn films<S: Simd>(&self, simd: S) -> Film<f32x4<S>> {
+        let PackedFilm { second_density, first_density, .. } = self.corner_numbers(simd).into();
+        Film { densities: [first_density, second_density] }
+    }
+
+    /// The curves that incident wavelengths are drawn from, of each corner's lobes.
+    #[inline(always)]
+    fn proposed<S: Simd>(&self, simd: S, rule: Rule, in_nm: f32) -> PerLobe<f32x4<S>> {
+        if rule != Rule::Film {
+            return self.returned(simd, rule, in_nm);
+        }
+        let row = self.model.curves.row(simd, in_nm);
+        let ([first, second], [a, b]) = (self.dyes(simd), self.films(simd).densities);
+        let table = &self.model.curves.proposals;
+        [table.proposed(simd, row, first, a), table.proposed(simd, row, second, b)]
     }
 
     /// The re-radiation for what the lobes return of one wavelength and emit at another, 1/nm.
@@ -268,15 +319,19 @@ impl<'t> PackedMixture<'t> {
 
     /// What each corner's lobes absorb of light at `lambda_nm`.
     #[inline(always)]
-    fn absorbed<S: Simd>(&self, simd: S, mixing: Mixing, lambda_nm: f32) -> PerLobe<f32x4<S>> {
+    fn absorbed<S: Simd>(&self, simd: S, rule: Rule, lambda_nm: f32) -> PerLobe<f32x4<S>> {
         let none = f32x4::splat(simd, 0.0);
-        match &self.model.model {
-            Model::Dyes(_) if self.fluorescent => {
+        match (&self.model.model, rule) {
+            (Model::Dyes(_), Rule::Ring(mixing)) if self.fluorescent => {
                 let PackedDyes { weight, concentration, .. } = self.corner_numbers(simd).into();
-                let pair = self.pairs(simd, &self.model.curves.absorption, lambda_nm);
+                let pair = self.pairs(simd, rule, &self.model.curves.absorption, lambda_nm);
                 mixing.absorbed(pair, concentration, weight)
             }
-            Model::Analytic(_) if self.fluorescent => {
+            (_, Rule::Film) if self.fluorescent => {
+                let pair = self.pairs(simd, rule, &self.model.curves.absorption, lambda_nm);
+                self.films(simd).absorbed(pair)
+            }
+            (Model::Analytic(_), _) if self.fluorescent => {
                 let PackedBells { concentration, absorption_nm, .. } =
                     self.corner_numbers(simd).into();
                 let nm = f32x4::splat(simd, lambda_nm);
@@ -288,8 +343,8 @@ impl<'t> PackedMixture<'t> {
 
     /// What each corner's lobes return of light at `in_nm`.
     #[inline(always)]
-    fn returned<S: Simd>(&self, simd: S, mixing: Mixing, in_nm: f32) -> PerLobe<f32x4<S>> {
-        self.returned_of(simd, mixing, in_nm, self.absorbed(simd, mixing, in_nm))
+    fn returned<S: Simd>(&self, simd: S, rule: Rule, in_nm: f32) -> PerLobe<f32x4<S>> {
+        self.returned_of(simd, rule, in_nm, self.absorbed(simd, rule, in_nm))
     }
 
     /// What each corner's lobes return of what they absorbed at `in_nm`.
@@ -297,43 +352,46 @@ impl<'t> PackedMixture<'t> {
     fn returned_of<S: Simd>(
         &self,
         simd: S,
-        mixing: Mixing,
+        rule: Rule,
         in_nm: f32,
         [one, two]: PerLobe<f32x4<S>>,
     ) -> PerLobe<f32x4<S>> {
         let (none, nm) = (f32x4::splat(simd, 0.0), f32x4::splat(simd, in_nm));
+        if !self.fluorescent {
+            return [none; 2];
+        }
         match &self.model.model {
-            Model::Dyes(dyes) if self.fluorescent => {
-                let accounting = dyes.options().accounting;
-                let yielded = self.per_lobe(simd, mixing, |dye| dye.quantum_yield);
+            Model::Reflectance => [none; 2],
+            Model::Dyes(_) | Model::Film(_) => {
+                let accounting = self.model.accounting();
+                let yielded = self.per_lobe(simd, rule, |dye| dye.quantum_yield);
                 let means_nm = match accounting {
                     Accounting::Energy => [none; 2],
-                    Accounting::Photon => self.per_lobe(simd, mixing, |dye| dye.mean_emission_nm),
+                    Accounting::Photon => self.per_lobe(simd, rule, |dye| dye.mean_emission_nm),
                 };
-                let second = match mixing {
-                    Mixing::Pooled => none,
-                    Mixing::Separate => accounting.returned(two, yielded[1], nm, means_nm[1]),
+                // A second lobe of zeros would cost as much as a real one.
+                let second = match rule.lobes() {
+                    1 => none,
+                    _ => accounting.returned(two, yielded[1], nm, means_nm[1]),
                 };
                 [accounting.returned(one, yielded[0], nm, means_nm[0]), second]
             }
-            Model::Analytic(bells) if self.fluorescent => {
+            Model::Analytic(bells) => {
                 let PackedBells { emission_nm, .. } = self.corner_numbers(simd).into();
                 let yielded = f32x4::splat(simd, to_single(bells.quantum_yield()));
                 [bells.accounting().returned(one, yielded, nm, emission_nm), none]
             }
-            _ => [none; 2],
         }
     }
 
     /// The density of each corner's emission at `out_nm`, 1/nm.
     #[inline(always)]
-    fn emission<S: Simd>(&self, simd: S, mixing: Mixing, out_nm: f32) -> PerLobe<f32x4<S>> {
+    fn emission<S: Simd>(&self, simd: S, rule: Rule, out_nm: f32) -> PerLobe<f32x4<S>> {
         let none = f32x4::splat(simd, 0.0);
         match &self.model.model {
-            Model::Dyes(_) if self.fluorescent => {
-                let PackedDyes { weight, .. } = self.corner_numbers(simd).into();
-                let pair = self.pairs(simd, &self.model.curves.emission, out_nm);
-                mixing.per_lobe(pair, weight)
+            Model::Dyes(_) | Model::Film(_) if self.fluorescent => {
+                let pair = self.pairs(simd, rule, &self.model.curves.emission, out_nm);
+                self.lobes_of(simd, rule, pair)
             }
             Model::Analytic(_) if self.fluorescent => {
                 let PackedBells { emission_nm, .. } = self.corner_numbers(simd).into();
@@ -350,35 +408,42 @@ impl<'t> PackedMixture<'t> {
     fn leaving<S: Simd>(
         &self,
         simd: S,
-        mixing: Mixing,
+        rule: Rule,
         out_nm: f32,
         emission: PerLobe<f32x4<S>>,
     ) -> Shares<f32x4<S>> {
-        let elastic = self.reflectance_through(simd, out_nm, self.absorbed(simd, mixing, out_nm));
-        Shares { elastic, lobes: self.leaving_lobes(simd, mixing, emission) }
+        let elastic = self.reflectance_through(simd, out_nm, self.absorbed(simd, rule, out_nm));
+        Shares { elastic, lobes: self.leaving_lobes(simd, rule, emission) }
     }
 
     #[inline(always)]
     fn leaving_lobes<S: Simd>(
         &self,
         simd: S,
-        mixing: Mixing,
+        rule: Rule,
         [one, two]: PerLobe<f32x4<S>>,
     ) -> PerLobe<f32x4<S>> {
         let none = f32x4::splat(simd, 0.0);
         if !self.fluorescent {
             return [none; 2];
         }
+        let weights = load(simd, &self.weights);
         let PackedDyes { weight, concentration, returned_nm, .. } =
             self.corner_numbers(simd).into();
-        let weights = load(simd, &self.weights);
-        // A second lobe of zeros would cost as much as a real one.
-        if mixing == Mixing::Pooled {
-            return [weights * returned_nm * one, none];
+        match rule {
+            Rule::Ring(Mixing::Pooled) => [weights * returned_nm * one, none],
+            Rule::Ring(mixing) => {
+                let [first, second] = mixing.concentrations(concentration, weight);
+                let [a, b] = self.dye_numbers(simd, |dye| dye.returned_nm);
+                [weights * first * a * one, weights * second * b * two]
+            }
+            Rule::Film => {
+                let ([first, second], [a, b]) = (self.dyes(simd), self.films(simd).densities);
+                let table = &self.model.curves.proposals;
+                let totals_nm = [table.totals_nm(simd, first, a), table.totals_nm(simd, second, b)];
+                [weights * totals_nm[0] * one, weights * totals_nm[1] * two]
+            }
         }
-        let [first, second] = mixing.concentrations(concentration, weight);
-        let [a, b] = self.dye_numbers(simd, |dye| dye.returned_nm);
-        [weights * first * a * one, weights * second * b * two]
     }
 
     /// What the lobes return of light at `in_nm`, and what leaves of it.
@@ -386,16 +451,16 @@ impl<'t> PackedMixture<'t> {
     fn arriving<S: Simd>(
         &self,
         simd: S,
-        mixing: Mixing,
+        rule: Rule,
         in_nm: f32,
     ) -> (PerLobe<f32x4<S>>, Shares<f32x4<S>>) {
-        let absorbed = self.absorbed(simd, mixing, in_nm);
-        let returned = self.returned_of(simd, mixing, in_nm, absorbed);
+        let absorbed = self.absorbed(simd, rule, in_nm);
+        let returned = self.returned_of(simd, rule, in_nm, absorbed);
         let elastic = self.reflectance_through(simd, in_nm, absorbed);
         let weights = load(simd, &self.weights);
         let mut lobes = [weights * returned[0], weights * returned[1]];
-        if self.fluorescent && matches!(self.model.model, Model::Dyes(_)) {
-            let emitted = self.per_lobe(simd, mixing, |dye| dye.emitted);
+        if self.fluorescent && self.model.model.dyes().is_some() {
+            let emitted = self.per_lobe(simd, rule, |dye| dye.emitted);
             lobes = [lobes[0] * emitted[0], lobes[1] * emitted[1]];
         }
         (returned, Shares { elastic, lobes })
@@ -407,40 +472,54 @@ impl<'t> PackedMixture<'t> {
         [load(simd, a), load(simd, b), load(simd, c), load(simd, d)]
     }
 
-    /// The number of each corner's dye.
+    /// The numbers of each corner's two dyes, `[first, second][corner]`.
     #[inline(always)]
-    fn dyes<S: Simd>(&self, simd: S) -> [u32; 4] {
-        let PackedDyes { first, .. } = PackedDyes::from(self.fluorescence.each_ref());
-        let dyes: i32x4<S> = load(simd, first).to_int();
-        let [a, b, c, d]: [i32; 4] = dyes.into();
-        [a.cast_unsigned(), b.cast_unsigned(), c.cast_unsigned(), d.cast_unsigned()]
+    fn dyes<S: Simd>(&self, simd: S) -> [[u32; 4]; 2] {
+        let [_, _, second, first] = self.corner_numbers(simd);
+        let first: i32x4<S> = first.to_int();
+        let second = match self.model.rule {
+            Rule::Ring(_) => first + 1,
+            Rule::Film => second.to_int(),
+        };
+        let [a, b, c, d]: [i32; 4] = first.into();
+        let [e, f, g, h]: [i32; 4] = second.into();
+        [[a, b, c, d].map(i32::cast_unsigned), [e, f, g, h].map(i32::cast_unsigned)]
     }
 
-    /// The curves of each corner's dye and of its neighbor at one wavelength.
+    /// The curves of each corner's two dyes at one wavelength.
     #[inline(always)]
-    fn pairs<S: Simd>(&self, simd: S, curves: &PairedCurves, lambda_nm: f32) -> [f32x4<S>; 2] {
+    fn pairs<S: Simd>(
+        &self,
+        simd: S,
+        rule: Rule,
+        curves: &PairedCurves,
+        lambda_nm: f32,
+    ) -> [f32x4<S>; 2] {
         let row = self.model.curves.row(simd, lambda_nm);
-        match self.common_dye {
-            Some(dye) => {
-                let [a, b] = curves.pair(row, dye);
-                [f32x4::splat(simd, a), f32x4::splat(simd, b)]
-            }
-            None => curves.pairs(simd, row.four_times(simd), self.dyes(simd)),
+        if let Some(dyes) = self.common_dyes {
+            let [a, b] = curves.pair(row, dyes);
+            return [f32x4::splat(simd, a), f32x4::splat(simd, b)];
+        }
+        let rows: Rows<S> = row.four_times(simd);
+        let [first, second] = self.dyes(simd);
+        match rule {
+            Rule::Ring(_) => curves.pairs(simd, rows, first),
+            Rule::Film => [curves.four_of(simd, rows, first), curves.four_of(simd, rows, second)],
         }
     }
 
-    /// A number of each corner's dye and of its neighbor.
+    /// A number of each corner's two dyes.
     #[inline(always)]
     fn dye_numbers<S: Simd>(&self, simd: S, number: impl Fn(&DyeNumbers) -> f32) -> [f32x4<S>; 2] {
         let curves = &self.model.curves;
-        if let Some(dye) = self.common_dye {
-            let [one, two] = curves.pair(dye);
+        if let Some(dyes) = self.common_dyes {
+            let [one, two] = curves.pair(dyes);
             return [f32x4::splat(simd, number(one)), f32x4::splat(simd, number(two))];
         }
         let mut numbers = [[0.0; 4]; 2];
-        let dyes = self.dyes(simd);
+        let [first, second] = self.dyes(simd);
         for i in 0..4 {
-            let [one, two] = curves.pair(dyes[i]);
+            let [one, two] = curves.pair([first[i], second[i]]);
             (numbers[0][i], numbers[1][i]) = (number(one), number(two));
         }
         [load(simd, &numbers[0]), load(simd, &numbers[1])]
@@ -458,11 +537,22 @@ impl<'t> PackedMixture<'t> {
     fn per_lobe<S: Simd>(
         &self,
         simd: S,
-        mixing: Mixing,
+        rule: Rule,
         number: impl Fn(&DyeNumbers) -> f32,
     ) -> PerLobe<f32x4<S>> {
-        let PackedDyes { weight, .. } = PackedDyes::from(self.fluorescence.each_ref());
-        mixing.per_lobe(self.dye_numbers(simd, number), load(simd, weight))
+        self.lobes_of(simd, rule, self.dye_numbers(simd, number))
+    }
+
+    /// Numbers of the lobes from those of each corner's two dyes.
+    #[inline(always)]
+    fn lobes_of<S: Simd>(&self, simd: S, rule: Rule, pair: [f32x4<S>; 2]) -> PerLobe<f32x4<S>> {
+        match rule {
+            Rule::Ring(mixing) => {
+                let PackedDyes { weight, .. } = PackedDyes::from(self.fluorescence.each_ref());
+                mixing.per_lobe(pair, load(simd, weight))
+            }
+            Rule::Film => pair,
+        }
     }
 }
 
@@ -476,8 +566,8 @@ impl Bispectral for PackedMixture<'_> {
 
     #[inline]
     fn reflectance(&self, lambda_nm: f32) -> f32 {
-        with_rules!(self, simd, mixing => {
-            self.reflectance_through(simd, lambda_nm, self.absorbed(simd, mixing, lambda_nm))
+        with_rules!(self, simd, rule => {
+            self.reflectance_through(simd, lambda_nm, self.absorbed(simd, rule, lambda_nm))
         })
     }
 
@@ -498,16 +588,16 @@ impl Bispectral for PackedMixture<'_> {
         if !self.fluorescent {
             return 0.0;
         }
-        with_rules!(self, simd, mixing => {
-            self.moved(simd, self.returned(simd, mixing, in_nm), self.emission(simd, mixing, out_nm))
+        with_rules!(self, simd, rule => {
+            self.moved(simd, self.returned(simd, rule, in_nm), self.emission(simd, rule, out_nm))
         })
     }
 
     #[inline]
     fn albedo(&self, in_nm: f32) -> f32 {
-        with_rules!(self, simd, mixing => {
-            let absorbed = self.absorbed(simd, mixing, in_nm);
-            let [one, two] = self.returned_of(simd, mixing, in_nm, absorbed);
+        with_rules!(self, simd, rule => {
+            let absorbed = self.absorbed(simd, rule, in_nm);
+            let [one, two] = self.returned_of(simd, rule, in_nm, absorbed);
             let weights = load(simd, &self.weights);
             self.reflectance_through(simd, in_nm, absorbed) + sum(weights * (one + two))
         })
@@ -515,16 +605,21 @@ impl Bispectral for PackedMixture<'_> {
 
     #[inline]
     fn sample_incident(&self, out_nm: f32, u: [f32; 2]) -> Option<Sample<f32>> {
-        with_rules!(self, simd, mixing => {
-            let emission = self.emission(simd, mixing, out_nm);
-            let shares = self.leaving(simd, mixing, out_nm, emission);
+        with_rules!(self, simd, rule => {
+            let emission = self.emission(simd, rule, out_nm);
+            let shares = self.leaving(simd, rule, out_nm, emission);
             let throughput = shares.total();
-            Some(match shares.choose(mixing.lobes(), throughput, u[0])? {
+            Some(match shares.choose(rule.lobes(), throughput, u[0])? {
                 None => elastic(out_nm, shares.elastic, throughput),
                 Some(lobe) => {
-                    let in_nm = self.chosen(lobe).draw_absorbed(simd, u[1]);
-                    let moved = self.moved(simd, self.returned(simd, mixing, in_nm), emission);
-                    shifted(in_nm, moved, throughput)
+                    let in_nm = self.chosen(lobe).draw_incident(simd, u[1]);
+                    let drawn = self.moved(simd, self.proposed(simd, rule, in_nm), emission);
+                    let sample = shifted(in_nm, drawn, throughput);
+                    if rule != Rule::Film {
+                        return Some(sample);
+                    }
+                    let moved = self.moved(simd, self.returned(simd, rule, in_nm), emission);
+                    Sample { throughput: throughput * ratio(moved, drawn), ..sample }
                 }
             })
         })
@@ -535,31 +630,31 @@ impl Bispectral for PackedMixture<'_> {
         if !self.fluorescent {
             return 0.0;
         }
-        with_rules!(self, simd, mixing => {
-            let emission = self.emission(simd, mixing, out_nm);
-            let moved = self.moved(simd, self.returned(simd, mixing, in_nm), emission);
-            ratio(moved, self.leaving(simd, mixing, out_nm, emission).total())
+        with_rules!(self, simd, rule => {
+            let emission = self.emission(simd, rule, out_nm);
+            let drawn = self.moved(simd, self.proposed(simd, rule, in_nm), emission);
+            ratio(drawn, self.leaving(simd, rule, out_nm, emission).total())
         })
     }
 
     #[inline]
     fn incident_elastic_probability(&self, out_nm: f32) -> f32 {
-        with_rules!(self, simd, mixing => {
-            let shares = self.leaving(simd, mixing, out_nm, self.emission(simd, mixing, out_nm));
+        with_rules!(self, simd, rule => {
+            let shares = self.leaving(simd, rule, out_nm, self.emission(simd, rule, out_nm));
             ratio(shares.elastic, shares.total())
         })
     }
 
     #[inline]
     fn sample_outgoing(&self, in_nm: f32, u: [f32; 2]) -> Option<Sample<f32>> {
-        with_rules!(self, simd, mixing => {
-            let (returned, shares) = self.arriving(simd, mixing, in_nm);
+        with_rules!(self, simd, rule => {
+            let (returned, shares) = self.arriving(simd, rule, in_nm);
             let throughput = shares.total();
-            Some(match shares.choose(mixing.lobes(), throughput, u[0])? {
+            Some(match shares.choose(rule.lobes(), throughput, u[0])? {
                 None => elastic(in_nm, shares.elastic, throughput),
                 Some(lobe) => {
                     let out_nm = self.chosen(lobe).draw_emitted(simd, u[1]);
-                    let moved = self.moved(simd, returned, self.emission(simd, mixing, out_nm));
+                    let moved = self.moved(simd, returned, self.emission(simd, rule, out_nm));
                     shifted(out_nm, moved, throughput)
                 }
             })
@@ -571,24 +666,24 @@ impl Bispectral for PackedMixture<'_> {
         if !self.fluorescent {
             return 0.0;
         }
-        with_rules!(self, simd, mixing => {
-            let (returned, shares) = self.arriving(simd, mixing, in_nm);
-            ratio(self.moved(simd, returned, self.emission(simd, mixing, out_nm)), shares.total())
+        with_rules!(self, simd, rule => {
+            let (returned, shares) = self.arriving(simd, rule, in_nm);
+            ratio(self.moved(simd, returned, self.emission(simd, rule, out_nm)), shares.total())
         })
     }
 
     #[inline]
     fn outgoing_elastic_probability(&self, in_nm: f32) -> f32 {
-        with_rules!(self, simd, mixing => {
-            let (_, shares) = self.arriving(simd, mixing, in_nm);
+        with_rules!(self, simd, rule => {
+            let (_, shares) = self.arriving(simd, rule, in_nm);
             ratio(shares.elastic, shares.total())
         })
     }
 }
 
-/// The one first dye of the corners that fluoresce, `None` if they have several.
+/// The one number of a dye that the corners that fluoresce have, `None` if they have several.
 #[inline(always)]
-fn common_dye<S: Simd>(simd: S, concentration: f32x4<S>, number: f32x4<S>) -> Option<u32> {
+fn common_number<S: Simd>(simd: S, concentration: f32x4<S>, number: f32x4<S>) -> Option<u32> {
     // Nodes without fluorescence have number 0.
     let [a, b, c, d] = number.into();
     let greatest = greater_of(greater_of(a, b), greater_of(c, d));

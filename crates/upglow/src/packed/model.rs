@@ -2,7 +2,7 @@
 
 use fearless_simd::Level;
 
-use crate::material::formula::Mixing;
+use crate::material::formula::{Accounting, Mixing};
 use crate::material::model::Model;
 use crate::packed::bells::Bells;
 use crate::packed::curve_table::CurveTable;
@@ -11,8 +11,7 @@ use crate::packed::curve_table::CurveTable;
 #[derive(Clone, Debug)]
 pub(crate) struct PackedModel {
     pub(crate) model: Model,
-    /// That of the dyes; bells make one lobe too.
-    pub(crate) mixing: Mixing,
+    pub(crate) rule: Rule,
     pub(crate) curves: CurveTable,
     pub(crate) absorption_bells: Bells,
     pub(crate) emission_bells: Bells,
@@ -20,14 +19,46 @@ pub(crate) struct PackedModel {
     pub(crate) simd_level: Level,
 }
 
+/// How two dyes of one material make lobes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Rule {
+    /// Two neighbors of a ring; bells make one lobe, as pooled dyes do.
+    Ring(Mixing),
+    /// Any two in a film: a lobe each.
+    Film,
+}
+
+impl Rule {
+    /// How many lobes a material has.
+    #[inline(always)]
+    pub(crate) fn lobes(self) -> usize {
+        match self {
+            Self::Ring(mixing) => mixing.lobes(),
+            Self::Film => 2,
+        }
+    }
+}
+
 impl PackedModel {
+    /// What is conserved when dyes re-emit light.
+    #[inline(always)]
+    pub(crate) fn accounting(&self) -> Accounting {
+        match &self.model {
+            Model::Dyes(dyes) => dyes.options().accounting,
+            Model::Film(film) => film.accounting(),
+            Model::Analytic(bells) => bells.accounting(),
+            Model::Reflectance => Accounting::Energy,
+        }
+    }
+
     pub(crate) fn new(model: &Model) -> Self {
         let [absorption_bells, emission_bells] = Bells::of(model);
-        let mixing = match model {
-            Model::Dyes(dyes) => dyes.options().mixing,
-            Model::Reflectance | Model::Analytic(_) => Mixing::Pooled,
+        let rule = match model {
+            Model::Dyes(dyes) => Rule::Ring(dyes.options().mixing),
+            Model::Film(_) => Rule::Film,
+            Model::Reflectance | Model::Analytic(_) => Rule::Ring(Mixing::Pooled),
         };
         let (curves, simd_level) = (CurveTable::new(model), Level::new());
-        Self { model: model.clone(), mixing, curves, absorption_bells, emission_bells, simd_level }
+        Self { model: model.clone(), rule, curves, absorption_bells, emission_bells, simd_level }
     }
 }

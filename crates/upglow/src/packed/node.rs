@@ -16,9 +16,10 @@ pub struct PackedNode {
     /// Wavelength e (nm), then the coefficients of 1, d and d² in x, with d = λ − e: the reflectance
     /// is ½ + x / (2·√(1 + x²)).
     pub reflectance: [f32; 4],
-    /// Dyes: weight of the second, concentration, ∫ returned dλ (nm), number of the first. Bells:
-    /// emission peak (nm), concentration, ∫ returned dλ (nm), absorption peak (nm). Zeros where
-    /// nothing fluoresces.
+    /// Ring of dyes: weight of the second, concentration, ∫ returned dλ (nm), number of the first.
+    /// Film: optical density of the second dye, of the first, number of the second, of the first.
+    /// Bells: emission peak (nm), concentration, ∫ returned dλ (nm), absorption peak (nm). Zeros where
+    /// nothing fluoresces; otherwise the second number is above 0.
     pub fluorescence: [f32; 4],
 }
 
@@ -76,6 +77,20 @@ packed! {
 }
 
 packed! {
+    /// The fluorescence of a [`PackedNode`] in a film.
+    PackedFilm {
+        /// Optical density of the second dye, 0..=6.
+        second_density,
+        /// Optical density of the first dye, not below the second's.
+        first_density,
+        /// The second dye's number.
+        second,
+        /// The first dye's number.
+        first
+    }
+}
+
+packed! {
     /// The fluorescence of a [`PackedNode`] in a model of bells.
     PackedBells {
         /// Wavelength of the emission's peak, nm.
@@ -117,11 +132,15 @@ impl PackedNode {
 }
 
 fn packed_fluorescence(fluorescence: Fluorescence, model: &Model) -> [f64; 4] {
-    let returned_nm = fluorescence.lobes(model).map(|lobe| lobe.returned_total_nm()).sum();
+    let returned_nm = fluorescence.lobes(model).map(|lobe| lobe.proposed_total_nm()).sum();
     match fluorescence {
         Fluorescence::None => [0.0; 4],
         Fluorescence::Dyes { first, weight, concentration } => {
             PackedDyes { weight, concentration, returned_nm, first: first as f64 }.into()
+        }
+        Fluorescence::Film { dyes, densities: [first_density, second_density] } => {
+            let [first, second] = dyes.map(|dye| dye as f64);
+            PackedFilm { second_density, first_density, second, first }.into()
         }
         Fluorescence::Analytic { emission_peak_nm, stokes_shift_nm, concentration } => {
             let absorption_nm = emission_peak_nm - stokes_shift_nm;

@@ -1,8 +1,8 @@
 //! The curves of dyes as densities for drawing wavelengths, in single precision.
 
 use fearless_simd::Simd;
+use upglow_color::Grid;
 use upglow_color::rounding::to_single;
-use upglow_color::{Grid, Spectrum};
 
 use crate::packed::vector::{greater_of, smaller_of, whole};
 
@@ -30,11 +30,10 @@ pub(crate) struct QuantileTable {
 }
 
 impl QuantileTable {
-    pub(crate) fn new<'c>(ring: impl Iterator<Item = &'c Spectrum>) -> Self {
+    /// The table of several curves on [`Grid::FINE`].
+    pub(crate) fn new<'c>(curves: impl Iterator<Item = &'c [f64]>) -> Self {
         let mut table = Self::default();
-        for curve in ring {
-            table.push(curve.values());
-        }
+        curves.for_each(|curve| table.push(curve));
         table
     }
 
@@ -96,6 +95,7 @@ mod tests {
     use crate::material::dye_model::{DyeCurves, DyeModel, DyeOptions};
     use crate::material::dye_set::DyeSet;
     use fearless_simd::{Level, dispatch};
+    use upglow_color::Spectrum;
 
     fn quantile(table: &QuantileTable, dye: u32, u: f32) -> f32 {
         dispatch!(Level::baseline(), simd => table.quantile(simd, dye, u))
@@ -112,7 +112,7 @@ mod tests {
             model.curves().iter().map(curve).collect::<Vec<_>>()
         };
         for curves in [of(|dye| &dye.absorption), of(|dye| &dye.emission)] {
-            let table = QuantileTable::new(curves.iter().copied());
+            let table = QuantileTable::new(curves.iter().map(|curve| curve.values()));
             for (dye, curve) in (0..).zip(&curves) {
                 let exact = Distribution::new(curve);
                 for i in 0..10_000 {
@@ -132,7 +132,9 @@ mod tests {
         let empty = Spectrum::new(Grid::FINE, vec![0.0; BINS + 1]).unwrap();
         let set = DyeSet::named("konig8").unwrap();
         let model = DyeModel::new(set, DyeOptions::default()).unwrap();
-        let table = QuantileTable::new([&empty, &model.curves()[0].absorption].into_iter());
+        let table = QuantileTable::new(
+            [&empty, &model.curves()[0].absorption].map(Spectrum::values).into_iter(),
+        );
         for dye in [0, 1] {
             for u in [0.0, 1.0_f32.next_down(), 1.0, 2.0, -1.0, f32::NAN, f32::INFINITY] {
                 let nm = quantile(&table, dye, u);

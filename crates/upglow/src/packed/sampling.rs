@@ -10,8 +10,8 @@ use crate::material::formula::{Accounting, Mixing, PerLobe};
 use crate::material::lobe::Lobe;
 use crate::material::model::Model;
 use crate::packed::curve_table::DyeNumbers;
-use crate::packed::model::PackedModel;
-use crate::packed::node::{PackedBells, PackedDyes};
+use crate::packed::model::{PackedModel, Rule};
+use crate::packed::node::{PackedBells, PackedDyes, PackedFilm};
 use crate::packed::vector::{sum, whole};
 
 /// A lobe that wavelengths are drawn from.
@@ -25,15 +25,20 @@ pub(crate) struct DrawnLobe<'t> {
 }
 
 impl<'t> DrawnLobe<'t> {
-    /// An incident wavelength with the density of what the lobe returns, from `u` in 0..1.
+    /// An incident wavelength with the density of what the lobe returns, or of the curve that stands for
+    /// it in a film, from `u` in 0..1.
     #[inline(always)]
-    pub(crate) fn draw_absorbed<S: Simd>(&self, simd: S, u: f32) -> f32 {
+    pub(crate) fn draw_incident<S: Simd>(&self, simd: S, u: f32) -> f32 {
         match &self.model.model {
             Model::Dyes(model) if model.options().accounting == Accounting::Energy => {
                 let (dye, u) = self.pick_dye(simd, |dye| dye.absorbed_nm, u);
                 self.model.curves.absorbing.quantile(simd, dye, u)
             }
-            _ => self.in_double(simd, Lobe::sample_absorbed, u),
+            Model::Film(_) => {
+                let (dye, density) = self.film_dye(simd);
+                self.model.curves.proposals.draw(simd, dye, density, u)
+            }
+            _ => self.in_double(simd, Lobe::sample_incident, u),
         }
     }
 
@@ -45,7 +50,22 @@ impl<'t> DrawnLobe<'t> {
                 let (dye, u) = self.pick_dye(simd, |dye| dye.emitted, u);
                 self.model.curves.emitting.quantile(simd, dye, u)
             }
+            Model::Film(_) => {
+                let (dye, _) = self.film_dye(simd);
+                self.model.curves.emitting.quantile(simd, dye, u)
+            }
             _ => self.in_double(simd, Lobe::sample_emitted, u),
+        }
+    }
+
+    /// The number of the dye that is this lobe of a film, and its optical density.
+    #[inline(always)]
+    fn film_dye<S: Simd>(&self, simd: S) -> (u32, f32) {
+        let PackedFilm { second_density, first_density, second, first } = self.numbers.into();
+        if self.lobe == 0 {
+            (whole(simd, first), first_density)
+        } else {
+            (whole(simd, second), second_density)
         }
     }
 
@@ -55,10 +75,10 @@ impl<'t> DrawnLobe<'t> {
     fn pick_dye<S: Simd>(&self, simd: S, area: impl Fn(&DyeNumbers) -> f32, u: f32) -> (u32, f32) {
         let PackedDyes { weight, first, .. } = self.numbers.into();
         let first = whole(simd, first);
-        if self.model.mixing == Mixing::Separate {
+        if self.model.rule == Rule::Ring(Mixing::Separate) {
             return (first + u32::from(self.lobe > 0), u);
         }
-        let [one, two] = self.model.curves.pair(first);
+        let [one, two] = self.model.curves.pair([first, first + 1]);
         let [one, two] = [(1.0 - weight) * area(one), weight * area(two)];
         let target = u * (one + two);
         // Selected without a branch, which could not be predicted.
@@ -83,6 +103,11 @@ impl<'t> DrawnLobe<'t> {
                 let PackedDyes { weight, concentration, first, .. } = numbers.into();
                 let first = whole(simd, to_single(first)) as usize;
                 Fluorescence::Dyes { first, weight, concentration }
+            }
+            Model::Film(_) => {
+                let PackedFilm { second_density, first_density, second, first } = numbers.into();
+                let dyes = [first, second].map(|dye| whole(simd, to_single(dye)) as usize);
+                Fluorescence::Film { dyes, densities: [first_density, second_density] }
             }
             Model::Analytic(_) => {
                 let PackedBells { emission_nm, concentration, absorption_nm, .. } = numbers.into();
