@@ -9,6 +9,7 @@ use crate::observer::Observer;
 use crate::samples::{SampleRules, SamplesError, curves_from_samples, fine_means};
 use crate::spectrum::{Spectrum, SpectrumCsvError, read_columns};
 use crate::tables::daylight::{DAYLIGHT_COMPONENTS, DAYLIGHT_FIRST_NM, DAYLIGHT_STEP_NM};
+use crate::tables::lamps::{LAMPS, LAMPS_FIRST_NM, LAMPS_LAST_NM, LAMPS_STEP_NM};
 
 /// A named light: relative spectral power on [`Grid::FINE`], 300 to 830 nm.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,7 +78,8 @@ const SAMPLED_FROM_NM: f64 = 2.0;
 
 impl Illuminant {
     /// The built-in lights.
-    pub const NAMES: [&str; 6] = ["D65", "D60", "D55", "D50", "A", "E"];
+    pub const NAMES: [&str; 10] =
+        ["D65", "D60", "D55", "D50", "A", "E", "FL2", "FL11", "HP1", "LED-B3"];
 
     /// The built-in light of this name, in any case.
     ///
@@ -92,8 +94,17 @@ impl Illuminant {
             "D50" => Ok(Self::daylight("D50", 5000.0)),
             "A" => Ok(Self::a()),
             "E" => Ok(Self::from_fn("E", |_| 100.0)),
-            _ => Err(IlluminantError::Unknown { found: name.into() }),
+            _ => Self::lamp(name).ok_or_else(|| IlluminantError::Unknown { found: name.into() }),
         }
+    }
+
+    /// A lamp of the tables, whose power is zero below 380 and above 780 nm.
+    fn lamp(name: &str) -> Option<Self> {
+        let (name, power) = LAMPS.iter().find(|(known, _)| known.eq_ignore_ascii_case(name))?;
+        let grid = Grid::try_new(LAMPS_FIRST_NM, LAMPS_LAST_NM, LAMPS_STEP_NM)
+            .expect("the table is on a grid");
+        let power = Spectrum::new(grid, power.to_vec()).expect("the table fills the grid");
+        Some(Self { name: (*name).into(), power: power.resampled(Grid::FINE) })
     }
 
     /// The light in CSV text with the header `wavelength_nm,power`, 300 to 830 nm.
@@ -186,11 +197,13 @@ impl Illuminant {
         if fwhm_nm >= SAMPLED_FROM_NM {
             return Self::from_spectrum(name, &line.power);
         }
-        // To three widths on either side of the peak, where the line has fallen to 1e-11.
-        let near = (-48..=48).map(|i| peak_nm + fwhm_nm / 16.0 * f64::from(i));
+        // To three widths on either side of the peak, where the line has fallen to 1e-11; then it is dark.
+        let power = |i: i32, nm: f64| if i.abs() > 48 { 0.0 } else { 100.0 * shape(nm) };
+        let near = (-49..=49).map(|i| (i, peak_nm + fwhm_nm / 16.0 * f64::from(i)));
         let ends = [f64::from(Grid::FINE.first_nm()) - 1.0, f64::from(Grid::FINE.last_nm()) + 1.0];
         let [first, last] = ends;
-        let inside = near.filter(|nm| (first..last).contains(nm)).map(|nm| (nm, 100.0 * shape(nm)));
+        let is_inside = |(_, nm): &(i32, f64)| *nm > first && *nm < last;
+        let inside = near.filter(is_inside).map(|(i, nm)| (nm, power(i, nm)));
         let samples = std::iter::once((first, 0.0)).chain(inside).chain([(last, 0.0)]);
         Self::from_spectrum(name, &fine_means(samples))
     }
@@ -305,11 +318,25 @@ mod tests {
     }
 
     #[test]
+    fn a_narrow_line_is_dark_beside_it() {
+        for width_nm in [0.01, 0.5, 1.9] {
+            let power = Illuminant::line("line", 365.0, width_nm).unwrap().power().clone();
+            for (nm, value) in Grid::FINE.wavelengths_nm().zip(power.values()) {
+                // Three widths, and the nanometer around each sample.
+                let is_far = (nm - 365.0).abs() > 3.1 * width_nm + 2.0;
+                assert!(!is_far || *value == 0.0, "{width_nm}: {value} at {nm} nm");
+            }
+        }
+    }
+
+    #[test]
     fn names_are_accepted_in_any_case_and_errors_list_them() {
         assert_eq!(Illuminant::named("d50").unwrap().name(), "D50");
+        assert_eq!(Illuminant::named("led-b3").unwrap().name(), "LED-B3");
         assert_eq!(
             Illuminant::named("F11").unwrap_err().to_string(),
-            "unknown illuminant \"F11\", expected D65, D60, D55, D50, A, E, or a CSV file"
+            "unknown illuminant \"F11\", expected D65, D60, D55, D50, A, E, FL2, FL11, HP1, LED-B3, or a \
+             CSV file"
         );
     }
 

@@ -1024,7 +1024,7 @@ pub(crate) static DYES: [DyeRow; 30] = [
 
 /// Name and ring of every built-in set; the last dye of a ring pairs with the first.
 #[rustfmt::skip]
-pub(crate) static DYE_SETS: [(&str, &[&str]); 3] = [
+pub(crate) static DYE_SETS: [(&str, &[&str]); 4] = [
     ("seed8", &[
         "ATTO_390",
         "ATTO_425",
@@ -1060,5 +1060,15 @@ pub(crate) static DYE_SETS: [(&str, &[&str]); 3] = [
         "Alexa_Fluor_405",
         "Biotium_CF405M",
         "Biotium_NucView_405",
+    ]),
+    ("wide8", &[
+        "Biotium_CF405M",
+        "FP_mAzamiGreen",
+        "FP_mNeonGreen",
+        "ATTO_532__fpbase",
+        "Alexa_Fluor_546",
+        "Alexa_Fluor_594",
+        "ATTO_610",
+        "Alexa_Fluor_405",
     ]),
 ];
