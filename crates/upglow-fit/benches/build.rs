@@ -4,7 +4,7 @@ use divan::Bencher;
 use rgb2spec::optimize::{gamut::Gamut, optimize};
 use upglow::{AnalyticModel, DyeModel, DyeOptions, DyeSet, Model};
 use upglow_color::Contract;
-use upglow_fit::{FitOptions, Unwatched, build_cube};
+use upglow_fit::{Preset, Unwatched, build_cube};
 
 fn main() {
     divan::main();
@@ -18,12 +18,12 @@ fn dyes(set: &str) -> Model {
 fn bench_build(bencher: Bencher<'_, '_>, model: &Model, resolution: usize) {
     let contract = Contract::default();
     bencher.bench(|| {
-        build_cube(&contract, model, FitOptions::default(), resolution, &Unwatched)
+        build_cube(&contract, model, Preset::Konig2020.options(), resolution, &Unwatched)
             .expect("nobody stops it")
     });
 }
 
-/// The default build at 32³ and 64³.
+/// The build of the preset `konig2020` at 32³ and 64³.
 #[divan::bench(args = [32, 64], sample_count = 3, sample_size = 1)]
 fn default(bencher: Bencher<'_, '_>, resolution: usize) {
     bench_build(bencher, &dyes("konig8"), resolution);

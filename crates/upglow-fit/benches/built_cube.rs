@@ -9,7 +9,7 @@ use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use upglow::{Bispectral, DyeModel, DyeOptions, DyeSet, LookupTable, Model, PackedMixture};
 use upglow_color::Contract;
-use upglow_fit::{FitOptions, Unwatched, build_cube};
+use upglow_fit::{Preset, Unwatched, build_cube};
 
 fn main() {
     divan::main();
@@ -22,7 +22,8 @@ const MATERIALS: usize = 1024;
 static TABLE: LazyLock<LookupTable> = LazyLock::new(|| {
     let set = DyeSet::named("konig8").expect("built in");
     let model = Model::Dyes(DyeModel::new(set, DyeOptions::default()).expect("valid"));
-    let cube = build_cube(&Contract::default(), &model, FitOptions::default(), 32, &Unwatched);
+    let cube =
+        build_cube(&Contract::default(), &model, Preset::Konig2020.options(), 32, &Unwatched);
     cube.expect("nobody stops it").lookup_table()
 });
 

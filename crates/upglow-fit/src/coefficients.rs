@@ -6,7 +6,7 @@ use upglow_color::{Contract, Goal, Grid, LinearRgb, Metric};
 
 use crate::cube::{BuildError, Spread, Stage};
 use crate::fitter::Fitter;
-use crate::options::FitOptions;
+use crate::preset::Preset;
 use crate::problem::parabola::sigmoid_of;
 use crate::problem::solver::{SolverOptions, solve};
 use crate::problem::{PassiveProblem, Shape};
@@ -30,7 +30,7 @@ pub fn fit_coefficients(
     resolution: usize,
     watch: &dyn Watch,
 ) -> Result<CoefficientTable, BuildError> {
-    let options = FitOptions { slope_max_per_nm, ..FitOptions::default() };
+    let options = Preset::Jakob2019.options().with_slope_max_per_nm(slope_max_per_nm);
     let fitter = Fitter::new(contract, &Model::Reflectance, options)?;
     let blank = vec![[0.0; 3]; 3 * resolution.pow(3)];
     let brightness = CoefficientTable::levels(resolution);
@@ -111,7 +111,7 @@ impl Column<'_> {
     fn from(&self, step: usize, near: [f64; 3]) -> [f64; 3] {
         let problem = self.problem(step);
         let free = solve(&problem, near, &SolverOptions::default()).x;
-        let limit_per_nm = self.fitter.context.slope_limit_per_nm;
+        let limit_per_nm = self.fitter.main().slope_limit_per_nm;
         if Shape::Free.edge(free).slope_per_nm.abs() <= limit_per_nm {
             return free;
         }
@@ -124,7 +124,8 @@ impl Column<'_> {
 
     /// The coefficients to store: flat for grays.
     fn stored(&self, step: usize, found: [f64; 3]) -> Sigmoid {
-        let job = Job { context: &self.fitter.context, goal: self.goal(step) };
+        let job =
+            Job { context: &self.fitter.context, stage: self.fitter.main(), goal: self.goal(step) };
         let flat =
             |x: f64| Sigmoid { c0: 0.0, c1: 0.0, c2: x.clamp(-GREATEST_FLAT, GREATEST_FLAT) };
         match job.gray() {

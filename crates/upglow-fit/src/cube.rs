@@ -1,18 +1,19 @@
 //! Builds cubes.
 
 mod lattice;
+mod neighbors;
 mod summary;
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
-use upglow::{CoefficientTableError, Cube, CubeError, FitRecord, Model, Node};
+use upglow::{CoefficientTableError, Cube, CubeError, Model, Node};
 use upglow_color::{Contract, LinearRgb, Metric};
 
-use crate::fit::{EXACT, Fit};
+use crate::fit::Fit;
 use crate::fitter::Fitter;
-use crate::options::{FitOptions, FitOptionsError};
+use crate::options::{FitOptions, FitOptionsError, Method};
 use crate::progress::{Progress, Watch};
 use lattice::Lattice;
 pub use summary::{CubeSummary, Spread};
@@ -67,15 +68,13 @@ pub fn build_cube(
             break;
         }
     }
+    if fitter.is_film() && options.method == Method::Search {
+        let stage = Stage::new("choosing", lattice.len(), watch);
+        fits = neighbors::Choice::new(&fitter, lattice, contract, model).choose(fits, &stage)?;
+    }
     let nodes = Stage::new("measuring", lattice.len(), watch)
         .each(lattice.len(), |index| stored_node(&fitter, lattice.rgb(index), &fits[index]))?;
-    let fit = FitRecord {
-        metric: options.metric.to_string(),
-        slope_max_per_nm: options.slope_max_per_nm,
-        sweeps: options.sweeps,
-        method: options.method.file_name().into(),
-        evaluations: fitter.evaluations(),
-    };
+    let fit = options.record(model, fitter.evaluations());
     Ok(Cube::new(contract.clone(), model.clone(), fit, resolution, nodes)?)
 }
 
@@ -151,7 +150,7 @@ fn sweep_node(
 ) -> Fit {
     let known = before[index];
     let is_settled = !moved[index] && lattice.neighbors(index).all(|i| !moved[i]);
-    if known.de2000 <= EXACT || is_settled {
+    if fitter.is_final(&known) || is_settled {
         return known;
     }
     let neighbors: Vec<Fit> = lattice.neighbors(index).map(|i| before[i]).collect();

@@ -2,12 +2,13 @@
 
 use std::sync::atomic::Ordering;
 
-use upglow::{Model, ModelOnGrid};
+use upglow::{Fluorescence, Model, ModelOnGrid};
 use upglow_color::{Contract, LinearRgb};
 
 use crate::fit::Fit;
 use crate::options::{FitOptions, FitOptionsError, Method};
-use crate::search::context::Context;
+use crate::search::context::{Context, Stage};
+use crate::search::film::better;
 use crate::search::job::Job;
 use crate::search::konig2020::Parameters;
 
@@ -15,6 +16,10 @@ use crate::search::konig2020::Parameters;
 #[derive(Debug)]
 pub struct Fitter {
     pub(crate) context: Context,
+    /// The slope limit of a reflectance alone.
+    pub(crate) alone: Stage,
+    /// The slope limits of a reflectance under dyes, in the order in which they are tried.
+    with_dyes: Vec<Stage>,
     options: FitOptions,
 }
 
@@ -50,8 +55,13 @@ impl Fitter {
         model: &Model,
         options: FitOptions,
     ) -> Result<Self, FitOptionsError> {
-        let slope_limit_per_nm = options.slope_limit_per_nm()? * (1.0 - SLOPE_MARGIN);
-        Ok(Self { context: Context::new(contract, model, slope_limit_per_nm), options })
+        options.check(model)?;
+        let context = Context::new(contract, model);
+        let stage = |limit_per_nm: f64| Stage::new(limit_per_nm * (1.0 - SLOPE_MARGIN));
+        let (alone_per_nm, with_dyes_per_nm) = options.slope_limits_per_nm()?;
+        let alone = stage(alone_per_nm);
+        let with_dyes = with_dyes_per_nm.into_iter().map(stage).collect();
+        Ok(Self { context, alone, with_dyes, options })
     }
 
     /// The model and the contract, on the grid of the fit.
@@ -85,6 +95,9 @@ impl Fitter {
     pub(crate) fn fit_among(&self, rgb: LinearRgb, around: &[Fit]) -> Fit {
         let job = self.job(rgb);
         job.gray().unwrap_or_else(|| match self.options.method {
+            Method::Search | Method::Exhaustive if self.is_film() || !self.has_one_limit() => {
+                self.by_rule(rgb, around)
+            }
             Method::Search => job.search(around),
             Method::Exhaustive => job.search_exhaustively(),
             Method::Konig2020 => job.konig2020_first(Parameters::Coefficients),
@@ -96,6 +109,9 @@ impl Fitter {
     pub(crate) fn improve(&self, rgb: LinearRgb, known: Fit, neighbors: &[Fit]) -> Fit {
         let job = self.job(rgb);
         match self.options.method {
+            Method::Search | Method::Exhaustive if self.is_film() => {
+                job.improve_film(known, neighbors)
+            }
             Method::Search | Method::Exhaustive => job.improve(known, neighbors),
             Method::Konig2020 => job.konig2020_again(Parameters::Coefficients, known, neighbors),
             Method::Konig2020Features => {
@@ -104,9 +120,77 @@ impl Fitter {
         }
     }
 
+    pub(crate) fn is_final(&self, fit: &Fit) -> bool {
+        fit.is_matched() && (!self.is_film() || fit.fluorescence == Fluorescence::None)
+    }
+
+    /// Matches of `rgb` near the materials of its neighbors: of the kind of `known`, and of some kinds of
+    /// the neighbors, each pulled towards the mean of the neighbors of its kind.
+    pub(crate) fn matches_near(
+        &self,
+        rgb: LinearRgb,
+        known: Fit,
+        neighbors: &[Fit],
+        kinds: usize,
+    ) -> Vec<Fit> {
+        let slope = known.reflectance.slope_per_nm.abs();
+        let is_wide = |stage: &&Stage| slope <= stage.slope_limit_per_nm * (1.0 + SLOPE_MARGIN);
+        let stage = self.with_dyes.iter().find(is_wide).unwrap_or(self.main());
+        self.job_at(rgb, stage).matches_near(known, neighbors, kinds)
+    }
+
+    pub(crate) fn is_film(&self) -> bool {
+        matches!(self.model().model(), Model::Film(_))
+    }
+
+    /// The material by the rule of choosing: a reflectance within its limit, else a material with dyes
+    /// within theirs, else, if limits are relaxed, either of them within steeper ones; if all miss, the
+    /// nearest.
+    fn by_rule(&self, rgb: LinearRgb, around: &[Fit]) -> Fit {
+        let passive = self.job_at(rgb, &self.alone).reflectance();
+        let mut best = passive;
+        for stage in &self.with_dyes {
+            if best.is_matched() {
+                break;
+            }
+            let job = self.job_at(rgb, stage);
+            if stage.slope_limit_per_nm > self.alone.slope_limit_per_nm {
+                best = better(Some(best), job.reflectance());
+                if best.is_matched() {
+                    break;
+                }
+            }
+            best = better(Some(best), self.with_dyes(&job, around, passive));
+        }
+        best
+    }
+
+    fn with_dyes(&self, job: &Job<'_>, around: &[Fit], passive: Fit) -> Fit {
+        match (self.is_film(), self.options.method) {
+            (true, Method::Exhaustive) => job.film_exhaustively(),
+            (true, _) => job.film(around, passive),
+            (false, Method::Exhaustive) => job.search_exhaustively(),
+            (false, _) => job.search(around),
+        }
+    }
+
+    /// The stage of the limit under dyes.
+    pub(crate) fn main(&self) -> &Stage {
+        &self.with_dyes[0]
+    }
+
+    /// Whether one slope limit holds for all materials.
+    fn has_one_limit(&self) -> bool {
+        self.with_dyes.len() == 1 && self.main().slope_limit_per_nm == self.alone.slope_limit_per_nm
+    }
+
     fn job(&self, rgb: LinearRgb) -> Job<'_> {
+        self.job_at(rgb, self.main())
+    }
+
+    fn job_at<'f>(&'f self, rgb: LinearRgb, stage: &'f Stage) -> Job<'f> {
         let colorimetry = self.model().colorimetry();
         let goal = self.options.metric.goal(colorimetry, colorimetry.xyz_from_rgb(rgb));
-        Job { context: &self.context, goal }
+        Job { context: &self.context, stage, goal }
     }
 }

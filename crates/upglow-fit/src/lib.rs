@@ -3,21 +3,20 @@
 //! - one color: [`Fitter`], [`Fit`]
 //! - which kinds of material millions of colors need: [`StandingTable`]
 //! - one material per texel: [`Polisher`]
-//! - a cube: [`build_cube`], [`CubeSummary`], [`verify`]
+//! - a cube: [`build_cube`], [`Preset`], [`CubeSummary`], [`MaterialKind`], [`verify`]
 //!
 //! # Examples
 //!
 //! ```
-//! use upglow::{DyeModel, DyeOptions, DyeSet, Model};
 //! use upglow_color::{Contract, LinearRgb};
-//! use upglow_fit::{FitOptions, Fitter};
+//! use upglow_fit::{Fitter, Preset};
 //!
-//! let model = Model::Dyes(DyeModel::new(DyeSet::named("konig8")?, DyeOptions::default())?);
-//! let fitter = Fitter::new(&Contract::default(), &model, FitOptions::default())?;
+//! let preset = Preset::Konig2020;
+//! let fitter = Fitter::new(&Contract::default(), &preset.model(), preset.options())?;
 //! let magenta = fitter.fit(LinearRgb([0.9, 0.0, 0.9]))?;
-//! assert!(magenta.fluorescence.concentration() > 0.0);
+//! assert!(magenta.fluorescence.dose() > 0.0);
 //! let gray = fitter.fit(LinearRgb([0.5, 0.5, 0.5]))?;
-//! assert_eq!(gray.fluorescence.concentration(), 0.0);
+//! assert_eq!(gray.fluorescence.dose(), 0.0);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -27,10 +26,13 @@ mod coefficients;
 mod cube;
 mod fit;
 mod fitter;
+mod kind;
 mod options;
 mod polish;
+mod preset;
 mod problem;
 mod progress;
+mod seams;
 mod search;
 mod standing_table;
 mod verify;
@@ -48,8 +50,11 @@ pub use coefficients::{fit_coefficients, round_trip};
 pub use cube::{BuildError, CubeSummary, Spread, build_cube};
 pub use fit::Fit;
 pub use fitter::{ColorError, Fitter};
-pub use options::{FitOptions, FitOptionsError, Method};
+pub use kind::{KindCounts, MaterialKind};
+pub use options::{FitOptions, FitOptionsError, GivenOptions, Method};
 pub use polish::Polisher;
+pub use preset::Preset;
 pub use progress::{Progress, Unwatched, Watch};
+pub use seams::{Seam, seams};
 pub use standing_table::{Estimate, StandingTable};
 pub use verify::{Check, Offender, Stopped, Verdict, VerifyOptions, VerifyReport, verify};

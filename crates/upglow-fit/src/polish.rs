@@ -9,7 +9,7 @@ mod start;
 mod sums;
 mod texel;
 
-use upglow::{Cube, Fluorescence, LengthError, Model, Node};
+use upglow::{Cube, FitRecord, Fluorescence, LengthError, Model, Node};
 use upglow_color::{LinearRgb, Matrix3};
 
 use crate::fitter::Fitter;
@@ -28,7 +28,8 @@ use texel::Texel;
 /// color's tetrahedron starts near the color, and a few Newton steps of least length, with sums in
 /// single precision, lead to it. Similar colors get similar materials.
 ///
-/// Materials respect the cube's slope limit. Grays are flat and do not fluoresce if the cube's contract
+/// Materials respect the cube's slope limits, that under dyes if any node around the color has dyes. A
+/// material is steeper only between steeper nodes, or by the cube's own rule if its limits are relaxed. Grays are flat and do not fluoresce if the cube's contract
 /// makes white the perfect diffuser, and a material between some that do not fluoresce does not
 /// either. Each color is processed alone: results do not depend on how an image is divided into
 /// batches, or on the processor.
@@ -36,12 +37,12 @@ use texel::Texel;
 /// # Examples
 ///
 /// ```
-/// use upglow::{DyeModel, DyeOptions, DyeSet, Model, Node};
+/// use upglow::Node;
 /// use upglow_color::Contract;
-/// use upglow_fit::{FitOptions, Polisher, Unwatched, build_cube};
+/// use upglow_fit::{Polisher, Preset, Unwatched, build_cube};
 ///
-/// let model = Model::Dyes(DyeModel::new(DyeSet::named("konig8")?, DyeOptions::default())?);
-/// let options = FitOptions::default();
+/// let preset = Preset::Konig2020;
+/// let (model, options) = (preset.model(), preset.options());
 /// let cube = build_cube(&Contract::default(), &model, options, 5, &Unwatched)?;
 /// let polisher = Polisher::new(&cube)?;
 /// let mut texels = [Node::default(); 2];
@@ -63,7 +64,15 @@ pub struct Polisher<'c> {
     /// One over X, Y, Z of the perfect diffuser.
     per_white: [f64; 3],
     grays_are_flat: bool,
-    slope_limit_per_nm: f64,
+    slope_limits_per_nm: SlopeLimits,
+}
+
+/// The greatest slopes of texels between corners that are not steeper, 1/nm.
+#[derive(Clone, Copy, Debug)]
+struct SlopeLimits {
+    /// Where nothing fluoresces.
+    alone: f64,
+    under_dyes: f64,
 }
 
 /// If grays are flat, white differs from the perfect diffuser by less than this: rounding only.
@@ -76,8 +85,13 @@ impl<'c> Polisher<'c> {
     ///
     /// [`FitOptionsError`] if the cube's slope limit is out of the range for fits.
     pub fn new(cube: &'c Cube) -> Result<Self, FitOptionsError> {
-        let slope_max_per_nm = cube.fit().slope_max_per_nm;
-        let options = FitOptions { slope_max_per_nm, ..FitOptions::default() };
+        let &FitRecord { slope_max_per_nm, slope_under_dyes_per_nm, relaxed, .. } = cube.fit();
+        let options = FitOptions {
+            slope_max_per_nm,
+            slope_under_dyes_per_nm,
+            relaxed,
+            ..FitOptions::default()
+        };
         let fitter = Fitter::new(cube.contract(), cube.model(), options)?;
         let model = fitter.model();
         let corners = (0..cube.nodes().len()).map(|i| Corner::new(cube, i, model)).collect();
@@ -94,7 +108,10 @@ impl<'c> Polisher<'c> {
         let per_white = diffuser.0.map(|v| 1.0 / v);
         let grays_are_flat = (white - diffuser).0.iter().all(|v| v.abs() < FLAT);
         let sums = SingleSums::new(model);
-        let slope_limit_per_nm = fitter.context.slope_limit_per_nm;
+        let slope_limits_per_nm = SlopeLimits {
+            alone: fitter.alone.slope_limit_per_nm,
+            under_dyes: fitter.main().slope_limit_per_nm,
+        };
         Ok(Self {
             cube,
             sums,
@@ -103,7 +120,7 @@ impl<'c> Polisher<'c> {
             xyz_from_rgb,
             per_white,
             grays_are_flat,
-            slope_limit_per_nm,
+            slope_limits_per_nm,
             fitter,
         })
     }
@@ -169,8 +186,12 @@ impl<'c> Polisher<'c> {
 }
 
 /// The texel of a color outside the cube.
-const NOWHERE: Node =
-    Node { reflectance: [f32::NAN; 3], dye: 0, fluorescence: [f32::NAN; 3], de2000: f32::NAN };
+const NOWHERE: Node = Node {
+    reflectance: [f32::NAN; 3],
+    dyes: [0; 2],
+    fluorescence: [f32::NAN; 3],
+    de2000: f32::NAN,
+};
 
 impl Glow {
     fn fluorescence(&self) -> Fluorescence {
@@ -178,6 +199,9 @@ impl Glow {
         match self.family {
             Family::Pair(first) if concentration > 0.0 => {
                 Fluorescence::Dyes { first, weight: u, concentration }
+            }
+            Family::Film([first, second]) => {
+                Fluorescence::film((first, concentration), (second, u))
             }
             Family::Bells if concentration > 0.0 => Fluorescence::Analytic {
                 emission_peak_nm: u * UNIT_NM,

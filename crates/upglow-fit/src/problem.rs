@@ -1,7 +1,9 @@
 //! The least-squares problems of fitting a material to a color.
 
-use upglow::{AnalyticModel, DyeModel, Edge, Emitted, ModelOnGrid};
-use upglow_color::{Goal, Matrix3, Xyz};
+use std::f64::consts::LN_10;
+
+use upglow::{AnalyticModel, DyeModel, Edge, Emitted, FilmModel, ModelOnGrid};
+use upglow_color::{Goal, Grid, Matrix3, Xyz};
 
 pub(crate) mod parabola;
 pub(crate) mod solver;
@@ -107,6 +109,9 @@ pub(crate) const CONCENTRATION: usize = 3;
 
 const FRACTION: [f64; 2] = [0.0, 1.0];
 
+/// Wavelengths of the grid of fits.
+const MOST_SAMPLES: usize = Grid::FIT.len();
+
 /// Residuals of a color, and their derivatives from those of the color.
 fn residuals_of<const N: usize>(
     goal: &Goal,
@@ -182,6 +187,75 @@ impl Residuals<3, 5> for DyeProblem<'_> {
         // A single dye is its own partner: its weight has no effect.
         let weight = if self.dyes.curves().len() == 1 { [0.0, 0.0] } else { FRACTION };
         [s0, s1, s2, FRACTION, weight]
+    }
+}
+
+/// Reflectance under a film of two dyes; the unknowns are the shape's coordinates and the optical
+/// density of each dye.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FilmProblem<'a> {
+    pub(crate) sums: &'a Sums,
+    pub(crate) goal: Goal,
+    pub(crate) shape: Shape,
+    pub(crate) model: &'a ModelOnGrid,
+    pub(crate) dyes: [usize; 2],
+    /// Absorption of the two dyes.
+    pub(crate) absorption: [&'a Lanes; 2],
+}
+
+impl FilmProblem<'_> {
+    /// The color, and its derivatives by the unknowns.
+    pub(crate) fn color(&self, &[s0, s1, s2, a0, a1]: &[f64; 5]) -> (Xyz, [Xyz; 5]) {
+        let (parabola, jacobian) = self.shape.chart([s0, s1, s2]);
+        let mut passed = [0.0; MOST_SAMPLES];
+        let passed = &mut passed[..self.model.wavelengths_nm().len()];
+        let emitted = self.model.emitted_by_film(self.dyes, [a0, a1], passed);
+        let passed = self.sums.lanes(passed);
+        let blocked = lanes_from(|i| 1.0 - passed[i]);
+        let [a, b] = self.absorption.map(|a| lanes_from(|i| a[i] * passed[i]));
+        let reflected = self.sums.reflect(parabola, &blocked, [&a, &b]);
+        let [by_s0, by_s1, by_s2] = by_shape(&reflected, jacobian);
+        let by_density =
+            [0, 1].map(|dye| Xyz::from(emitted.derivatives[dye]) - LN_10 * reflected.seen_by[dye]);
+        let color = reflected.color + Xyz::from(emitted.color);
+        (color, [by_s0, by_s1, by_s2, by_density[0], by_density[1]])
+    }
+}
+
+impl FilmProblem<'_> {
+    /// The change of the residuals with the optical density of each dye of the set, `[dye]`.
+    pub(crate) fn by_every_dye(&self, x: &[f64; 5], lanes: &[Lanes]) -> Vec<[f64; 3]> {
+        let &[s0, s1, s2, a0, a1] = x;
+        let (parabola, _) = self.shape.chart([s0, s1, s2]);
+        let reflectance = self.sums.reflectance(parabola);
+        let film = [a0, a1];
+        let shown = lanes_from(|i| {
+            let density = film[0] * self.absorption[0][i] + film[1] * self.absorption[1][i];
+            reflectance[i] * 10_f64.powf(-density)
+        });
+        let emitted = self.model.emitted_by_dyes_of_set(self.dyes, film);
+        let (_, by_color) = self.goal.residuals(self.color(x).0);
+        emitted
+            .into_iter()
+            .zip(lanes)
+            .map(|(emitted, a)| {
+                let lost = self.sums.integrate(|i| shown[i] * a[i]);
+                by_color * (Xyz::from(emitted) - LN_10 * lost).0
+            })
+            .collect()
+    }
+}
+
+impl Residuals<3, 5> for FilmProblem<'_> {
+    fn eval(&self, x: &[f64; 5]) -> ([f64; 3], Jacobian<3, 5>) {
+        let (color, derivatives) = self.color(x);
+        residuals_of(&self.goal, color, derivatives)
+    }
+
+    fn bounds(&self) -> [[f64; 2]; 5] {
+        let [s0, s1, s2] = self.shape.bounds();
+        let second = if self.dyes[0] == self.dyes[1] { [0.0; 2] } else { FilmModel::DENSITIES };
+        [s0, s1, s2, FilmModel::DENSITIES, second]
     }
 }
 

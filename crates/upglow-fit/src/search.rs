@@ -1,23 +1,29 @@
 //! Our search for the material of a color: reflectance first, then the most promising starts.
 
 pub(crate) mod context;
+pub(crate) mod film;
 pub(crate) mod job;
 pub(crate) mod konig2020;
 mod least;
+mod least_dose;
 mod starts;
 
-use upglow::{DyeModel, Fluorescence, Model};
+use upglow::{DyeModel, Edge, Fluorescence, Model};
 use upglow_color::{Metric, ciede2000};
 
 use crate::fit::{EXACT, Fit, Start};
 use crate::problem::Shape;
 use crate::problem::parabola::{MIDDLE_NM, sigmoid_of};
 use crate::problem::solver::{SolverOptions, solve};
+use film::better;
 use job::Job;
 use least::LeastConcentration;
 
 /// Greatest number of evaluations for a reflectance without slope limit: most take 5, detours 10.
 const PASSIVE_STEPS: usize = 12;
+
+/// The same where a miss would add a dye. Nearly black colors take most.
+const PATIENT_STEPS: usize = 60;
 
 /// A reflectance that is too steep by less than this factor and matches within this distance may have
 /// a neighbor within the limit that matches too.
@@ -62,7 +68,7 @@ impl Job<'_> {
         let count = self.starts_to_add(around, leading.len());
         let mut best = None;
         let is_nearly_passive =
-            |fit: &Fit| fit.is_matched() && fit.fluorescence.concentration() < NEARLY_PASSIVE;
+            |fit: &Fit| fit.is_matched() && fit.fluorescence.dose() < NEARLY_PASSIVE;
         if around.iter().any(is_nearly_passive) {
             best = self.without_fluorescence();
         }
@@ -75,7 +81,7 @@ impl Job<'_> {
         if count == 0 || known.is_some_and(|fit| fit.is_matched()) {
             return known;
         }
-        self.best_of(known, self.context.starts.nearest(&self.goal).into_iter().take(count))
+        self.best_of(known, self.starts().nearest(&self.goal).into_iter().take(count))
     }
 
     /// The best of `known` and of the fits from `starts`. Stops at the first match, with as little
@@ -123,8 +129,11 @@ impl Job<'_> {
         {
             return passive;
         }
-        for start in self.context.starts.nearest_of_each(&self.goal, EXHAUSTIVE_STARTS) {
-            best = Some(nearer(best, self.fit_from(start)));
+        for start in self.starts().nearest_of_each(&self.goal, EXHAUSTIVE_STARTS) {
+            let found = self.fit_from(start);
+            let found =
+                if found.is_matched() { self.with_least_fluorescence(found) } else { found };
+            best = Some(better(best, found));
         }
         best.expect("there is at least one start")
     }
@@ -155,20 +164,43 @@ impl Job<'_> {
 
     /// A reflectance within the slope limit that matches, or nearly matches, the color.
     pub(crate) fn without_fluorescence(&self) -> Option<Fit> {
-        let in_lab = Self { goal: self.goal.under(Metric::De76), ..*self };
-        let problem = in_lab.passive_problem(Shape::Free);
-        let options = SolverOptions { step_limit: PASSIVE_STEPS, ..SolverOptions::default() };
-        let free = solve(&problem, [0.0; 3], &options);
-        self.context.count(free.evaluations);
-        let reflectance = sigmoid_of(free.x).to_edge(MIDDLE_NM);
-        let steepness = reflectance.slope_per_nm.abs() / self.context.slope_limit_per_nm;
+        let (reflectance, norm) = self.free_reflectance(PASSIVE_STEPS);
+        let steepness = self.steepness(reflectance);
         if steepness <= 1.0 {
             return Some(self.measured(reflectance, Fluorescence::None));
         }
         let (factor, distance) = NEARLY_WITHIN;
         let start = Start { reflectance, fluorescence: Fluorescence::None };
-        (steepness < factor && free.norm < distance)
+        (steepness < factor && norm < distance)
             .then(|| self.follow(start, self.edge_shape(), &SolverOptions::default()))
+    }
+
+    /// The nearest reflectance that is found within the slope limit.
+    pub(crate) fn reflectance(&self) -> Fit {
+        let free = self.free_reflectance(PATIENT_STEPS);
+        let start = Start { reflectance: free.0, fluorescence: Fluorescence::None };
+        if self.steepness(free.0) <= 1.0 {
+            let fit = self.measured(free.0, Fluorescence::None);
+            if fit.is_matched() {
+                return fit;
+            }
+        }
+        self.follow(start, self.edge_shape(), &SolverOptions::default())
+    }
+
+    /// The nearest reflectance without a slope limit, and its distance in CIELAB.
+    fn free_reflectance(&self, step_limit: usize) -> (Edge, f64) {
+        let in_lab = Self { goal: self.goal.under(Metric::De76), ..*self };
+        let problem = in_lab.passive_problem(Shape::Free);
+        let options = SolverOptions { step_limit, ..SolverOptions::default() };
+        let free = solve(&problem, [0.0; 3], &options);
+        self.context.count(free.evaluations);
+        (sigmoid_of(free.x).to_edge(MIDDLE_NM), free.norm)
+    }
+
+    /// The slope of a reflectance as a share of the limit.
+    fn steepness(&self, reflectance: Edge) -> f64 {
+        reflectance.slope_per_nm.abs() / self.stage.slope_limit_per_nm
     }
 
     /// The fit from a start, continued with the next pairs of dyes.
@@ -209,6 +241,7 @@ fn is_alike(a: &Fit, b: &Fit) -> bool {
     /// Emission peaks and Stokes shifts nearer than this, nm.
     const BELLS_NM: f64 = 20.0;
     let same_shape = (a.reflectance.level > 0.0) == (b.reflectance.level > 0.0);
+    let same_slope = (a.reflectance.slope_per_nm > 0.0) == (b.reflectance.slope_per_nm > 0.0);
     same_shape
         && match (a.fluorescence, b.fluorescence) {
             (Fluorescence::None, Fluorescence::None) => true,
@@ -216,6 +249,9 @@ fn is_alike(a: &Fit, b: &Fit) -> bool {
                 Fluorescence::Dyes { first: i, weight: v, .. },
                 Fluorescence::Dyes { first: j, weight: w, .. },
             ) => i == j && (v - w).abs() < WEIGHTS,
+            (Fluorescence::Film { dyes: [a, b], .. }, Fluorescence::Film { dyes: [c, d], .. }) => {
+                same_slope && ((a, b) == (c, d) || (a, b) == (d, c))
+            }
             (
                 Fluorescence::Analytic { emission_peak_nm: p, stokes_shift_nm: s, .. },
                 Fluorescence::Analytic { emission_peak_nm: q, stokes_shift_nm: t, .. },

@@ -10,13 +10,17 @@ mod subjects;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
-use upglow::{Cube, DyeCurves, Interpolation, Model};
+use upglow::{Cube, DyeCurves, Interpolation, Model, Node};
 
 pub use report::{Check, Offender, Stopped, Verdict, VerifyReport};
 pub(crate) use subjects::random_rgb;
 
 use crate::cube::Spread;
+use crate::fitter::Fitter;
+use crate::kind::{KindCounts, MaterialKind};
+use crate::options::FitOptions;
 use crate::progress::{Progress, Watch};
+use crate::seams::seams;
 use inspector::{Figure, Findings, Inspector};
 use laws::{Law, verdict};
 use spectra::Spectra;
@@ -88,7 +92,74 @@ fn checks(cube: &Cube, inspector: &Inspector<'_>, findings: Findings) -> Vec<Che
     checks.extend(grid_checks(GRID_POINTS, findings.grid_points, cube));
     checks.extend(point_figures(findings.points, cube));
     checks.push(between_exact);
+    checks.extend(kinds(cube));
+    checks.extend(dose_over_least(cube));
+    checks.extend(seam_figures(cube));
     checks
+}
+
+/// Nodes for which a smaller dose is looked for.
+const DOSES_COMPARED: usize = 64;
+
+/// The greatest dose of a node over that of a fit of its color by itself, of nodes spread over the cube
+/// that have dyes and match; nothing if the options of the fit are not known.
+fn dose_over_least(cube: &Cube) -> Option<Check> {
+    let options = FitOptions::try_from(cube.fit()).ok()?;
+    let fitter = Fitter::new(cube.contract(), cube.model(), options).ok()?;
+    let kind_of = |node: &Node| MaterialKind::of_node(node, cube);
+    let nodes = cube.nodes();
+    let dyed: Vec<usize> =
+        (0..nodes.len()).filter(|&i| kind_of(&nodes[i]) == MaterialKind::Dyed).collect();
+    let step = dyed.len().div_ceil(DOSES_COMPARED).max(1);
+    let ratios: Vec<f64> = dyed
+        .iter()
+        .step_by(step)
+        .filter_map(|&index| {
+            let fit = fitter.fit(cube.node_rgb(index)).ok()?;
+            let alone = Node::new(fit.reflectance, fit.fluorescence, fit.de2000);
+            let dose = cube.node_material(index).fluorescence.dose();
+            (kind_of(&alone) == MaterialKind::Dyed).then(|| dose / fit.fluorescence.dose())
+        })
+        .collect();
+    let about =
+        "greatest dose of a node over that of its color fitted by itself, on a sample of nodes";
+    let most = ratios.iter().copied().fold(0.0, f64::max);
+    Some(figure(["dose-over-least", about, ""], most, ratios.len()))
+}
+
+/// The seams of gradients under other lights: the number that one in ten exceeds, and the greatest.
+fn seam_figures(cube: &Cube) -> Vec<Check> {
+    const NAMES: [[&str; 2]; 3] = [
+        ["seams-a-p90", "seams-a-worst"],
+        ["seams-led-b3-p90", "seams-led-b3-worst"],
+        ["seams-uv-lamp-p90", "seams-uv-lamp-worst"],
+    ];
+    const ABOUT: [&str; 2] = [
+        "greatest step of a gradient under this light over that under the cube's: one in ten has more",
+        "the same of the gradient with the strongest seam",
+    ];
+    let found = seams(cube).into_iter().zip(NAMES);
+    found
+        .flat_map(|(seam, names)| {
+            [(names[0], ABOUT[0], seam.p90), (names[1], ABOUT[1], seam.worst)]
+                .map(|(name, about, value)| figure([name, about, ""], value, seam.gradients))
+        })
+        .collect()
+}
+
+/// The share of nodes of each kind of material.
+fn kinds(cube: &Cube) -> [Check; 4] {
+    let nodes = cube.nodes().len();
+    let kinds: KindCounts =
+        cube.nodes().iter().map(|node| MaterialKind::of_node(node, cube)).collect();
+    let share = |count: u64| count as f64 / nodes as f64;
+    [
+        ("nodes-reflectance", "share of nodes matched by reflectance alone", kinds.reflectance),
+        ("nodes-dyed", "share of nodes matched with dyes within the slope limit", kinds.dyed),
+        ("nodes-steep", "share of nodes matched by steeper reflectances", kinds.steep),
+        ("nodes-missed", "share of nodes that miss their colors", kinds.missed),
+    ]
+    .map(|(name, about, count)| figure([name, about, ""], share(count), nodes))
 }
 
 /// The share of random colors for which blend promises to be exact.
@@ -150,10 +221,11 @@ fn dye_curves(model: &Model) -> Check {
     /// Rounding of a sum of 531 numbers.
     const LIMIT: f64 = 1e-9;
     let about = "how far absorption lies outside 0 to 1, emission below 0, its area from 1";
-    let dyes = match model {
-        Model::Dyes(model) => model.curves().iter().zip(model.set().dyes()).collect(),
-        _ => Vec::new(),
-    };
+    let dyes: Vec<_> = model
+        .dyes()
+        .into_iter()
+        .flat_map(|dyes| dyes.curves().iter().zip(dyes.set().dyes()))
+        .collect();
     let faults: Vec<f64> = dyes.iter().map(|(curves, _)| curve_fault(curves)).collect();
     let violations = faults.iter().filter(|&&fault| fault > LIMIT).count();
     let (found, at) = finding::greatest(faults.iter().copied());
@@ -183,8 +255,8 @@ mod tests {
     use super::*;
     use crate::progress::Unwatched;
     use upglow::{
-        Accounting, AnalyticModel, DyeModel, DyeOptions, DyeSet, Edge, FitRecord, Fluorescence,
-        Mixing, ModelOnGrid, Node, QuantumYield, Sigmoid,
+        Accounting, AnalyticModel, DyeModel, DyeOptions, DyeSet, Edge, FilmModel, FitRecord,
+        Fluorescence, Mixing, ModelOnGrid, Node, QuantumYield, Sigmoid,
     };
     use upglow_color::{Adaptation, Contract, Grid, Illuminant, LinearRgb, Metric, Spectrum};
 
@@ -206,6 +278,11 @@ mod tests {
         Model::Dyes(DyeModel::new(DyeSet::named("konig8").unwrap(), options).unwrap())
     }
 
+    fn film(accounting: Accounting) -> Model {
+        let set = DyeSet::named("konig8").unwrap();
+        Model::Film(FilmModel::new(set, accounting, QuantumYield::Measured).unwrap())
+    }
+
     /// A flat reflectance for grays; an edge, with some fluorescence, for other colors.
     fn material(LinearRgb([r, g, b]): LinearRgb, model: &Model) -> (Edge, Fluorescence) {
         let flat = Sigmoid::flat((r + g + b) / 3.0).to_edge(550.0);
@@ -216,6 +293,9 @@ mod tests {
         let edge = Edge { edge_nm: 450.0 + 200.0 * r, level, slope_per_nm: 0.0099 * (r - b) };
         let fluorescence = match model {
             Model::Reflectance => Fluorescence::None,
+            Model::Film(_) => {
+                Fluorescence::film((if r < 0.5 { 2 } else { 7 }, 1.5 * b), (5, 0.5 * g))
+            }
             Model::Dyes(_) => Fluorescence::Dyes {
                 first: if r < 0.5 { 2 } else { 7 },
                 weight: g,
@@ -273,7 +353,9 @@ mod tests {
 
     #[test]
     fn valid_cubes_of_all_models_keep_every_law() {
-        for model in [Model::Reflectance, Model::Analytic(AnalyticModel::default()), dyes()] {
+        let analytic = Model::Analytic(AnalyticModel::default());
+        let films = [Accounting::Energy, Accounting::Photon].map(film);
+        for model in [Model::Reflectance, analytic, dyes()].into_iter().chain(films) {
             let cube = cube(Contract::default(), model, |_, _| {});
             let report = report(&cube);
             assert!(report.holds(), "{:#?}", report.broken().collect::<Vec<_>>());
@@ -306,6 +388,43 @@ mod tests {
         let rgb = LinearRgb([2.0 / 3.0, 0.0, 1.0 / 3.0]);
         let [("slope", worst)] = &found[..] else { panic!("{found:?}") };
         assert_eq!((worst.node, worst.rgb), (Some([1, 0, 2]), Some(rgb)));
+    }
+
+    /// The valid cube with other limits.
+    fn limited(slope_max_per_nm: f64, under_dyes_per_nm: f64, relaxed: bool) -> Cube {
+        let honest = cube(Contract::default(), dyes(), |_, _| {});
+        let fit = FitRecord {
+            slope_max_per_nm: Some(slope_max_per_nm),
+            slope_under_dyes_per_nm: Some(under_dyes_per_nm),
+            relaxed,
+            ..FitRecord::default()
+        };
+        let nodes = honest.nodes().to_vec();
+        Cube::new(honest.contract().clone(), dyes(), fit, RESOLUTION, nodes).unwrap()
+    }
+
+    #[test]
+    fn a_slope_above_the_limit_under_dyes_is_caught_unless_the_limits_are_relaxed() {
+        let found = report(&limited(0.02, 0.009, false));
+        let broken: Vec<_> = found.broken().map(|check| check.name).collect();
+        assert_eq!(broken, ["slope-under-dyes"]);
+        assert!(report(&limited(0.02, 0.01, false)).holds());
+        let relaxed = report(&limited(0.005, 0.004, true));
+        assert!(relaxed.holds());
+        assert_eq!(relaxed.check("slope").unwrap().limit, Some(0.2));
+        let under_dyes = relaxed.check("slope-under-dyes").unwrap();
+        assert_eq!(under_dyes.verdict, Verdict::NotApplicable);
+    }
+
+    #[test]
+    fn kinds_of_nodes_add_up() {
+        let found = report(&limited(0.02, 0.009, true));
+        let share = |name| found.check(name).unwrap().value;
+        let kinds = ["nodes-reflectance", "nodes-dyed", "nodes-steep", "nodes-missed"].map(share);
+        // Rounding only.
+        assert!((kinds.iter().sum::<f64>() - 1.0).abs() < 1e-12, "{kinds:?}");
+        // The four grays match; the made-up materials of other colors do not.
+        assert_eq!(kinds[0], 4.0 / 64.0);
     }
 
     #[test]

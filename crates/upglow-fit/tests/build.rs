@@ -8,7 +8,8 @@ use upglow::{AnalyticModel, Cube, DyeModel, DyeOptions, DyeSet, Interpolation, M
 use upglow::{Fluorescence, ModelOnGrid};
 use upglow_color::{Contract, Grid, LinearRgb, Metric};
 use upglow_fit::{
-    BuildError, CubeSummary, FitOptions, Fitter, Method, Progress, Unwatched, Watch, build_cube,
+    BuildError, CubeSummary, FitOptions, Fitter, Method, Preset, Progress, Unwatched, Watch,
+    build_cube,
 };
 
 fn dyes(set: &str, optical_density: Option<f64>) -> Model {
@@ -22,7 +23,7 @@ fn build(model: &Model, options: FitOptions, resolution: usize) -> Cube {
 
 /// Share of nodes within 1 ΔE00, percent, and mean ΔE00.
 fn quality(model: &Model, slope_max_per_nm: Option<f64>) -> (f64, f64) {
-    let options = FitOptions { slope_max_per_nm, ..FitOptions::default() };
+    let options = Preset::Konig2020.options().with_slope_max_per_nm(slope_max_per_nm);
     let summary = CubeSummary::of(&build(model, options, 32));
     println!("{slope_max_per_nm:?}: {summary:?}");
     (100.0 * summary.within_1 as f64 / summary.nodes as f64, summary.mean_de2000)
@@ -46,8 +47,8 @@ const WORSE_THAN_EXHAUSTIVE: f64 = 0.02;
 #[test]
 fn no_random_node_is_worse_than_with_an_exhaustive_search() {
     let model = dyes("konig8", None);
-    let cube = build(&model, FitOptions::default(), 32);
-    let options = FitOptions { method: Method::Exhaustive, ..FitOptions::default() };
+    let cube = build(&model, Preset::Konig2020.options(), 32);
+    let options = FitOptions { method: Method::Exhaustive, ..Preset::Konig2020.options() };
     let fitter = Fitter::new(&Contract::default(), &model, options).unwrap();
     let mut worst: f64 = 0.0;
     // A step that is coprime to the number of nodes visits the whole cube.
@@ -64,7 +65,7 @@ fn cubes_do_not_depend_on_the_number_of_threads() {
     for model in [dyes("open8", None), Model::Analytic(AnalyticModel::default())] {
         let bytes = [1, 2, 5].map(|threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| build(&model, FitOptions::default(), 7)).to_bytes()
+            pool.install(|| build(&model, Preset::Konig2020.options(), 7)).to_bytes()
         });
         assert!(bytes[0] == bytes[1] && bytes[0] == bytes[2]);
     }
@@ -72,7 +73,7 @@ fn cubes_do_not_depend_on_the_number_of_threads() {
 
 #[test]
 fn the_stored_difference_is_that_of_the_stored_material() {
-    let cube = build(&dyes("konig8", None), FitOptions::default(), 6);
+    let cube = build(&dyes("konig8", None), Preset::Konig2020.options(), 6);
     let colorimetry = cube.contract().on(Grid::FIT);
     let sums = ModelOnGrid::new(cube.model(), &colorimetry);
     for (index, node) in cube.nodes().iter().enumerate() {
@@ -86,7 +87,7 @@ fn the_stored_difference_is_that_of_the_stored_material() {
 
 #[test]
 fn colors_between_exact_corners_are_exact() {
-    let cube = build(&dyes("konig8", None), FitOptions::default(), 9);
+    let cube = build(&dyes("konig8", None), Preset::Konig2020.options(), 9);
     let colorimetry = cube.contract().on(Grid::FIT);
     let sums = ModelOnGrid::new(cube.model(), &colorimetry);
     let mut checked = 0;
@@ -107,7 +108,7 @@ fn colors_between_exact_corners_are_exact() {
 
 #[test]
 fn a_reflectance_cube_does_not_fluoresce() {
-    let cube = build(&Model::Reflectance, FitOptions::default(), 5);
+    let cube = build(&Model::Reflectance, Preset::Konig2020.options(), 5);
     assert_eq!(CubeSummary::of(&cube).fluorescent, 0);
     assert!((0..125).all(|i| cube.node_material(i).fluorescence == Fluorescence::None));
 }
@@ -131,7 +132,7 @@ impl Watch for StopAtOnce {
 fn a_stopped_build_returns_an_error() {
     let model = dyes("konig8", None);
     let watch = StopAtOnce::default();
-    let stopped = build_cube(&Contract::default(), &model, FitOptions::default(), 16, &watch);
+    let stopped = build_cube(&Contract::default(), &model, Preset::Konig2020.options(), 16, &watch);
     assert_eq!(stopped, Err(BuildError::Stopped));
 }
 
@@ -142,7 +143,7 @@ fn options_out_of_range_are_refused() {
         let built = build_cube(&Contract::default(), &model, options, resolution, &Unwatched);
         built.unwrap_err().to_string()
     };
-    let steep = FitOptions { slope_max_per_nm: Some(-1.0), ..FitOptions::default() };
+    let steep = FitOptions { slope_max_per_nm: Some(-1.0), ..Preset::Konig2020.options() };
     assert_eq!(build(steep, 4), "slope limit -1/nm, expected 0.0001 to 0.2/nm");
-    assert_eq!(build(FitOptions::default(), 1), "resolution 1, expected 2 to 256");
+    assert_eq!(build(Preset::Konig2020.options(), 1), "resolution 1, expected 2 to 256");
 }

@@ -8,9 +8,9 @@ use upglow::{
     Mixture, Model,
 };
 use upglow_color::{Choice, Contract, Grid, LinearRgb, Metric};
-use upglow_fit::{ColorError, Fit, FitOptions, Fitter};
+use upglow_fit::{ColorError, Fit, FitOptions, Fitter, Preset};
 
-/// The limit of the default options, 1/nm.
+/// The limit of the preset `konig2020`, 1/nm.
 const SLOPE_LIMIT: f64 = 0.01;
 
 fn konig8(options: DyeOptions) -> Model {
@@ -22,7 +22,7 @@ fn fitter(model: &Model, options: FitOptions) -> Fitter {
 }
 
 fn fit(model: &Model, rgb: [f64; 3]) -> Fit {
-    fitter(model, FitOptions::default()).fit(LinearRgb(rgb)).unwrap()
+    fitter(model, Preset::Konig2020.options()).fit(LinearRgb(rgb)).unwrap()
 }
 
 fn assert_valid(model: &Model, fit: &Fit) {
@@ -62,7 +62,7 @@ fn a_magenta_that_no_reflectance_reaches_needs_dyes() {
     let model = konig8(DyeOptions::default());
     let magenta = fit(&model, [0.9, 0.0, 0.9]);
     let passive = fit(&Model::Reflectance, [0.9, 0.0, 0.9]);
-    assert!(magenta.fluorescence.concentration() > 0.0);
+    assert!(magenta.fluorescence.dose() > 0.0);
     assert!(magenta.de2000 < 0.6 * passive.de2000, "{magenta:?} {passive:?}");
     assert_valid(&model, &magenta);
 }
@@ -85,7 +85,7 @@ fn unreachable_pure_green_gets_a_near_material() {
 
 #[test]
 fn errors_name_the_channel_that_is_out_of_range() {
-    let fitter = fitter(&Model::Reflectance, FitOptions::default());
+    let fitter = fitter(&Model::Reflectance, Preset::Konig2020.options());
     for (rgb, channel) in
         [([f64::NAN, 0.0, 0.0], "red"), ([0.0, -0.1, 0.0], "green"), ([0.0, 0.0, 11.0], "blue")]
     {
@@ -101,19 +101,19 @@ fn a_color_that_needs_little_fluorescence_gets_little() {
     // From a color that a reflectance matches to one that none does, the concentration rises from 0
     // without a jump.
     let model = konig8(DyeOptions::default());
-    let fitter = fitter(&model, FitOptions::default());
+    let fitter = fitter(&model, Preset::Konig2020.options());
     let at = |t: f64| fitter.fit(LinearRgb([0.5, 0.5 - 0.45 * t, 0.5])).unwrap();
     let fits: Vec<Fit> = (0..=40).map(|i| at(f64::from(i) / 40.0)).collect();
-    let first = fits.iter().find(|f| f.fluorescence.concentration() > 0.0).unwrap();
+    let first = fits.iter().find(|f| f.fluorescence.dose() > 0.0).unwrap();
     assert!(first.de2000 <= 0.01, "{first:?}");
-    assert!(first.fluorescence.concentration() < 0.25, "{first:?}");
+    assert!(first.fluorescence.dose() < 0.25, "{first:?}");
 }
 
 #[test]
 fn every_metric_matches_a_reachable_color() {
     let model = konig8(DyeOptions::default());
     for &metric in Metric::ALL {
-        let options = FitOptions { metric, ..FitOptions::default() };
+        let options = FitOptions { metric, ..Preset::Konig2020.options() };
         let fit = fitter(&model, options).fit(LinearRgb([0.2, 0.7, 0.4])).unwrap();
         assert!(fit.de2000 <= 0.01, "{metric} {fit:?}");
     }

@@ -44,6 +44,11 @@ impl Lattice {
         LinearRgb(self.places(index).map(|place| place as f64 / last))
     }
 
+    /// 0 and 1 like the fields of a chessboard: neighbors differ.
+    pub(crate) fn parity(self, index: usize) -> usize {
+        self.places(index).iter().sum::<usize>() % 2
+    }
+
     /// The up to six nodes next to one.
     pub(crate) fn neighbors(self, index: usize) -> impl Iterator<Item = usize> {
         let n = self.resolution;

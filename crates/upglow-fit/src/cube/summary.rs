@@ -2,6 +2,8 @@
 
 use upglow::Cube;
 
+use crate::kind::{KindCounts, MaterialKind};
+
 /// Statistics of the stored differences of a cube's nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
@@ -23,6 +25,8 @@ pub struct CubeSummary {
     pub max_de2000: f64,
     /// Nodes whose material fluoresces.
     pub fluorescent: usize,
+    /// Nodes of each kind of material, under the limits that the cube records.
+    pub kinds: KindCounts,
 }
 
 impl CubeSummary {
@@ -34,7 +38,7 @@ impl CubeSummary {
     pub fn of(cube: &Cube) -> Self {
         let found: Vec<f64> = cube.nodes().iter().map(|node| node.de2000.into()).collect();
         let within = |limit: f64| found.iter().filter(|&&d| d <= limit).count();
-        let glows = |&index: &usize| cube.node_material(index).fluorescence.concentration() > 0.0;
+        let glows = |&index: &usize| cube.node_material(index).fluorescence.dose() > 0.0;
         let spread = Spread::of(found.clone());
         Self {
             nodes: found.len(),
@@ -45,6 +49,7 @@ impl CubeSummary {
             p95_de2000: spread.p95,
             max_de2000: spread.max,
             fluorescent: (0..found.len()).filter(glows).count(),
+            kinds: cube.nodes().iter().map(|node| MaterialKind::of_node(node, cube)).collect(),
         }
     }
 }
@@ -102,6 +107,7 @@ mod tests {
         let summary = CubeSummary::of(&cube);
         assert_eq!((summary.nodes, summary.exact), (8, 3));
         assert_eq!((summary.within_1, summary.within_2), (5, 7));
+        assert_eq!((summary.kinds.reflectance, summary.kinds.missed), (3, 5));
         assert_eq!((summary.p95_de2000, summary.max_de2000, summary.fluorescent), (7.0, 7.0, 0));
     }
 }

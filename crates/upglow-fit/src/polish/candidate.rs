@@ -1,10 +1,12 @@
 //! Colors of materials as functions of the unknowns, in two charts of the reflectance.
 
-use upglow::{AnalyticModel, Edge, Model};
+use std::f64::consts::LN_10;
+
+use upglow::{AnalyticModel, Edge, FilmModel, Model};
 
 use crate::polish::Polisher;
 use crate::polish::descent::{
-    Bounds, Measure, Point, UNKNOWNS, Unknowns, Vector, dot, shortest_step, within,
+    Bounds, LEAST_DAMPING, Measure, Point, UNKNOWNS, Unknowns, Vector, dot, shortest_step, within,
 };
 use crate::polish::start::{Family, Glow};
 use crate::polish::sums::Shown;
@@ -75,35 +77,47 @@ pub(super) fn value_bounds(value: f64) -> [f64; 2] {
 pub(super) fn bounds(family: Family, model: &Model) -> Bounds {
     let fraction = [0.0, 1.0];
     let fixed = [0.0, 0.0];
-    let [u, v] = match (family, model) {
-        (Family::Pair(_), Model::Dyes(dyes)) if dyes.curves().len() > 1 => [fraction, fixed],
+    let [c, u, v] = match (family, model) {
+        (Family::Pair(_), Model::Dyes(dyes)) if dyes.curves().len() > 1 => {
+            [fraction, fraction, fixed]
+        }
+        (Family::Film([one, two]), _) => {
+            let second = if one == two { fixed } else { FilmModel::DENSITIES };
+            [FilmModel::DENSITIES, second, fixed]
+        }
         (Family::Bells, _) => {
             let ranges_nm = [AnalyticModel::EMISSION_PEAKS_NM, AnalyticModel::STOKES_SHIFTS_NM];
-            ranges_nm.map(|range| range.map(|nm| nm / UNIT_NM))
+            let [u, v] = ranges_nm.map(|range| range.map(|nm| nm / UNIT_NM));
+            [fraction, u, v]
         }
-        _ => [fixed, fixed],
+        _ => [fraction, fixed, fixed],
     };
     let level = [-LEVEL_BOUND, LEVEL_BOUND];
-    [[-EDGE_BOUND, EDGE_BOUND], level, [-1.0, 1.0], fraction, u, v]
+    [[-EDGE_BOUND, EDGE_BOUND], level, [-1.0, 1.0], c, u, v]
+}
+
+/// The unknowns of a material in the chart of edges, moved into the bounds.
+pub(super) fn unknowns(
+    edge: Edge,
+    glow: &Glow,
+    bounds: &Bounds,
+    slope_limit_per_nm: f64,
+) -> Unknowns {
+    let [c, u, v] = glow.numbers;
+    let slope = edge.slope_per_nm / slope_limit_per_nm;
+    let mut x = [scaled(edge.edge_nm), edge.level, slope, c, u, v];
+    for v in 0..UNKNOWNS {
+        x[v] = x[v].clamp(bounds[v][0], bounds[v][1]);
+    }
+    x
+}
+
+/// The edge of a material in the chart of edges.
+pub(super) fn edge_of_unknowns([e, level, slope, ..]: &Unknowns, slope_limit_per_nm: f64) -> Edge {
+    edge_of([*e, *level, slope * slope_limit_per_nm], 1.0)
 }
 
 impl Polisher<'_> {
-    /// The greatest slope.
-    #[inline(always)]
-    pub(super) fn steepness(&self, &[q0, q1, q2]: &Parabola) -> Steepness {
-        let d = q1 * q1 - 4.0 * q2 * q0;
-        let r = (9.0 / 16.0 * d * d + 5.0 * q2 * q2).sqrt();
-        if r == 0.0 {
-            return Steepness { squared: 0.0, level: q0 };
-        }
-        // As `Sigmoid::steepest_slope_per_nm`, without its root.
-        let (over, under) = if d > 0.0 { (q2, r + 0.75 * d) } else { (r - 0.75 * d, 5.0 * q2) };
-        let level = over / under;
-        let g = 1.0 + level * level;
-        let limit = self.slope_limit_per_nm * UNIT_NM;
-        Steepness { squared: (0.5 * d + r) / (5.0 * g * g * g * limit * limit), level }
-    }
-
     /// The reflectance with these values at the chart wavelengths.
     #[inline(always)]
     pub(super) fn shape(&self, values: &Vector) -> ValueShape {
@@ -119,9 +133,10 @@ impl Polisher<'_> {
 
     /// The material with these unknowns.
     #[inline(always)]
-    pub(super) fn candidate(&self, x: Unknowns) -> Candidate {
+    pub(super) fn candidate(&self, x: Unknowns, slope_limit_per_nm: f64) -> Candidate {
         let shape = self.shape(&[x[0], x[1], x[2]]);
-        Candidate { x, shape, steepness: self.steepness(&shape.parabola) }
+        let steepness = Steepness::of(&shape.parabola, slope_limit_per_nm);
+        Candidate { x, shape, steepness }
     }
 
     /// The color of a candidate, and its derivatives.
@@ -149,6 +164,14 @@ impl Polisher<'_> {
         let [.., c, u, v] = candidate.x;
         let parabola = &candidate.shape.parabola;
         let (mut color, emitted) = match (family, self.cube.model()) {
+            (Family::Film(dyes), _) => {
+                let (emitted, passed) = self.sums.film(self.fitter.model(), dyes, [c, u]);
+                let mut color = in_double(self.sums.color_under_film(parabola, &passed));
+                for k in 0..3 {
+                    color[k] += emitted.color[k];
+                }
+                return color;
+            }
             (Family::Pair(first), Model::Dyes(dyes)) => {
                 let absorbers = [&self.sums.dyes[first], &self.sums.dyes[dyes.partner(first)]];
                 let shares = [c * (1.0 - u), c * u];
@@ -174,9 +197,14 @@ impl Polisher<'_> {
     }
 
     /// A material in the chart of edges: edge (t), level, slope relative to the limit.
-    pub(super) fn point_of_edge(&self, family: Family, x: Unknowns) -> Point {
+    pub(super) fn point_of_edge(
+        &self,
+        family: Family,
+        x: Unknowns,
+        slope_limit_per_nm: f64,
+    ) -> Point {
         let [e, p, slope, ..] = x;
-        let unit = self.slope_limit_per_nm * UNIT_NM;
+        let unit = slope_limit_per_nm * UNIT_NM;
         let s = slope * unit;
         let g = 1.0 + p * p;
         let root = g.sqrt();
@@ -197,22 +225,6 @@ impl Polisher<'_> {
         Point { x, color: shaded.color, by: [by_edge, by_level, by_slope, by_c, by_u, by_v] }
     }
 
-    /// The unknowns of a material in the chart of edges, moved into the bounds.
-    pub(super) fn unknowns(&self, edge: Edge, glow: &Glow, bounds: &Bounds) -> Unknowns {
-        let slope = edge.slope_per_nm / self.slope_limit_per_nm;
-        let [c, u, v] = glow.numbers;
-        let mut x = [scaled(edge.edge_nm), edge.level, slope, c, u, v];
-        for v in 0..UNKNOWNS {
-            x[v] = x[v].clamp(bounds[v][0], bounds[v][1]);
-        }
-        x
-    }
-
-    /// The edge of a material in the chart of edges.
-    pub(super) fn edge_of_unknowns(&self, [e, level, slope, ..]: &Unknowns) -> Edge {
-        edge_of([*e, *level, slope * self.slope_limit_per_nm], 1.0)
-    }
-
     /// The unknowns after the shortest step in the chart of values that removes the residual and brings
     /// the slope to its limit.
     pub(super) fn step_along_limit(
@@ -221,10 +233,10 @@ impl Polisher<'_> {
         candidate: &Candidate,
         measure: &impl Measure,
         bounds: &Bounds,
-        damping: f64,
+        slope_limit_per_nm: f64,
     ) -> Unknowns {
         let ValueShape { parabola, scale } = &candidate.shape;
-        let (steep, by_parabola) = candidate.steepness.derived(parabola, self.slope_limit_per_nm);
+        let (steep, by_parabola) = candidate.steepness.derived(parabola, slope_limit_per_nm);
         let ([r0, r1, r2], by_color) = here.measured(measure);
         let residual = [r0, r1, r2, STEEPNESS_WEIGHT * (steep - STEEPNESS_GOAL)];
         let mut by = [[0.0; 4]; UNKNOWNS];
@@ -235,7 +247,7 @@ impl Polisher<'_> {
         for i in 0..3 {
             by[i][3] = STEEPNESS_WEIGHT * scale[i] * dot(&self.sums.chart[i], &by_parabola);
         }
-        shortest_step(&here.x, &residual, &by, bounds, damping)
+        shortest_step(&here.x, &residual, &by, bounds, LEAST_DAMPING)
     }
 
     #[inline(always)]
@@ -253,6 +265,19 @@ impl Polisher<'_> {
                     shaded.color[k] += c * emitted[k];
                     shaded.by_glow[0][k] = emitted[k] - (1.0 - u) * a - u * b;
                     shaded.by_glow[1][k] = c * (by_weight[k] - b + a);
+                }
+                shaded
+            }
+            (Family::Film(dyes), _) => {
+                let (emitted, passed) = self.sums.film(self.fitter.model(), dyes, [c, u]);
+                let shown = self.sums.reflect_under_film(center, parabola, dyes, &passed);
+                let mut shaded = Shaded::of(&shown);
+                for k in 0..3 {
+                    shaded.color[k] += emitted.color[k];
+                    for dye in 0..2 {
+                        let seen = f64::from(shown.seen[dye][k]);
+                        shaded.by_glow[dye][k] = emitted.derivatives[dye][k] - LN_10 * seen;
+                    }
                 }
                 shaded
             }
@@ -295,6 +320,22 @@ impl ValueShape {
 }
 
 impl Steepness {
+    /// The greatest slope of a reflectance.
+    #[inline(always)]
+    pub(super) fn of(&[q0, q1, q2]: &Parabola, slope_limit_per_nm: f64) -> Self {
+        let d = q1 * q1 - 4.0 * q2 * q0;
+        let r = (9.0 / 16.0 * d * d + 5.0 * q2 * q2).sqrt();
+        if r == 0.0 {
+            return Self { squared: 0.0, level: q0 };
+        }
+        // As `Sigmoid::steepest_slope_per_nm`, without its root.
+        let (over, under) = if d > 0.0 { (q2, r + 0.75 * d) } else { (r - 0.75 * d, 5.0 * q2) };
+        let level = over / under;
+        let g = 1.0 + level * level;
+        let limit = slope_limit_per_nm * UNIT_NM;
+        Self { squared: (0.5 * d + r) / (5.0 * g * g * g * limit * limit), level }
+    }
+
     /// The greatest slope relative to the limit, and its derivatives with respect to the parabola's
     /// coefficients. At its maximum the slope is stationary in wavelength, so that the shift of the
     /// maximum does not contribute.
@@ -332,7 +373,7 @@ impl Shaded {
 mod tests {
     use super::*;
     use crate::problem::parabola::steepness;
-    use upglow::{Cube, FitRecord, Node};
+    use upglow::{Accounting, Cube, DyeSet, FitRecord, Node, QuantumYield};
     use upglow_color::Contract;
 
     const VALUES: [Vector; 4] =
@@ -349,10 +390,10 @@ mod tests {
         const ROUNDING: f64 = 1e-7;
         let cube = black();
         let polisher = Polisher::new(&cube).unwrap();
-        let limit = polisher.slope_limit_per_nm;
+        let limit = 0.01;
         for values in VALUES {
             let parabola = polisher.shape(&values).parabola;
-            let (found, by) = polisher.steepness(&parabola).derived(&parabola, limit);
+            let (found, by) = Steepness::of(&parabola, limit).derived(&parabola, limit);
             let (expected, expected_by) = steepness(parabola, limit);
             assert!((found - expected).abs() < ROUNDING * expected, "{values:?}");
             for m in 0..3 {
@@ -381,6 +422,42 @@ mod tests {
                     let quotient = (high[m] - low[m]) / (2.0 * STEP);
                     let told = shape.scale[i] * polisher.sums.chart[i][m];
                     assert!((told - quotient).abs() < 1e-4 * (1.0 + quotient.abs()), "{values:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn derivatives_by_the_densities_of_a_film_match_differences() {
+        // Single precision of colors near 1, 1e-6, over the step, and the square of the step.
+        const STEP: f64 = 1e-2;
+        const TOLERANCE: f64 = 3e-4;
+        let set = DyeSet::named("konig8").unwrap();
+        let film = FilmModel::new(set, Accounting::Photon, QuantumYield::Measured).unwrap();
+        let (contract, fit) = (Contract::default(), FitRecord::default());
+        let nodes = vec![Node::default(); 8];
+        let cube = Cube::new(contract, Model::Film(film), fit, 2, nodes).unwrap();
+        let polisher = Polisher::new(&cube).unwrap();
+        let at = |x: Unknowns| {
+            let candidate = polisher.candidate(x, 0.2);
+            let point = polisher.point_of_values(Family::Film([6, 3]), &candidate);
+            let color = polisher.color_of_values(Family::Film([6, 3]), &candidate);
+            // Rounding only.
+            assert!((0..3).all(|k| (color[k] - point.color[k]).abs() < 1e-6), "{x:?}");
+            point
+        };
+        for ([a, b, d], [first, second]) in VALUES.into_iter().zip([[0.5, 0.3], [3.0, 0.1]]) {
+            let x = [a, b, d, first, second, 0.0];
+            for v in 3..5 {
+                let moved = |by: f64| {
+                    let mut x = x;
+                    x[v] += by;
+                    at(x).color
+                };
+                let (low, high) = (moved(-STEP), moved(STEP));
+                for k in 0..3 {
+                    let off = at(x).by[v][k] - (high[k] - low[k]) / (2.0 * STEP);
+                    assert!(off.abs() < TOLERANCE, "{x:?} {v} {off:e}");
                 }
             }
         }

@@ -14,9 +14,13 @@ pub(super) struct Corner {
     pub(super) values: [f32; 3],
     /// Edge (t), level, slope (1/nm).
     pub(super) edge: [f32; 3],
-    /// Dyes: the position in the ring, first + weight. Bells: emission peak, Stokes shift, 100 nm.
+    /// Dyes: the position in the ring, first + weight. Film: the optical densities. Bells: emission peak,
+    /// Stokes shift, 100 nm.
     pub(super) hue: [f32; 2],
-    pub(super) concentration: f32,
+    /// The dose: 0 if nothing fluoresces.
+    pub(super) dose: f32,
+    /// The dyes of a film.
+    pub(super) dyes: [u8; 2],
     pub(super) xyz: [f32; 3],
     pub(super) de2000: f32,
 }
@@ -29,23 +33,28 @@ impl Corner {
         let node = &cube.nodes()[index];
         let material = cube.node_material(index);
         let edge = node.edge();
-        let (hue, concentration) = match material.fluorescence {
-            Fluorescence::None => ([0.0; 2], 0.0),
-            Fluorescence::Dyes { first, weight, concentration } => {
-                ([first as f64 + weight, 0.0], concentration)
-            }
-            Fluorescence::Analytic { emission_peak_nm, stokes_shift_nm, concentration } => {
-                ([emission_peak_nm, stokes_shift_nm].map(|nm| nm / UNIT_NM), concentration)
+        let hue = match material.fluorescence {
+            Fluorescence::None => [0.0; 2],
+            Fluorescence::Dyes { first, weight, .. } => [first as f64 + weight, 0.0],
+            Fluorescence::Film { densities, .. } => densities,
+            Fluorescence::Analytic { emission_peak_nm, stokes_shift_nm, .. } => {
+                [emission_peak_nm, stokes_shift_nm].map(|nm| nm / UNIT_NM)
             }
         };
         Self {
             values: CHART_NM.map(|nm| to_single(edge.at(nm))),
             edge: [scaled(edge.edge_nm), edge.level, edge.slope_per_nm].map(to_single),
             hue: hue.map(to_single),
-            concentration: to_single(concentration),
+            dose: to_single(material.fluorescence.dose()),
+            dyes: node.dyes,
             xyz: model.color(material).0.map(to_single),
             de2000: node.de2000,
         }
+    }
+
+    /// The greatest |dr/dλ|, 1/nm.
+    pub(super) fn steepest_slope_per_nm(&self) -> f64 {
+        f64::from(self.edge[2].abs())
     }
 
     pub(super) fn edge(&self) -> Edge {

@@ -13,11 +13,13 @@ pub(super) enum Family {
     Passive,
     /// This dye and its neighbor; the unknown is the weight.
     Pair(usize),
+    /// A film of these dyes; the unknowns are their optical densities.
+    Film([usize; 2]),
     /// Bells; the unknowns are emission peak and Stokes shift, 100 nm.
     Bells,
 }
 
-/// A fluorescence as unknowns: concentration, and those of its family.
+/// A fluorescence as unknowns: concentration, and those of its family; in a film both densities.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Glow {
     pub(super) family: Family,
@@ -76,18 +78,47 @@ fn parabolas(corners: &Corners<'_>) -> Edge {
 /// The mean fluorescence of the corners; passive only if all of them are.
 #[inline(always)]
 pub(super) fn glow(corners: &Corners<'_>, model: &Model) -> Glow {
-    if all(corners, |c| c.concentration == 0.0) {
-        return Glow { family: Family::Passive, numbers: [0.0; 3] };
+    if all(corners, |c| c.dose == 0.0) {
+        return PASSIVE;
+    }
+    if let Model::Film(_) = model {
+        return film(corners);
     }
     let (mut heaviest, mut most) = (corners[0].1, 0.0);
     for (weight, corner) in corners {
-        let share = weight * f64::from(corner.concentration);
+        let share = weight * f64::from(corner.dose);
         if share > most {
             (heaviest, most) = (corner, share);
         }
     }
-    let concentration = mean(corners, |c| c.concentration);
-    glow_around(heaviest, concentration, corners, model)
+    glow_around(heaviest, mean(corners, |c| c.dose), corners, model)
+}
+
+const PASSIVE: Glow = Glow { family: Family::Passive, numbers: [0.0; 3] };
+
+/// The two dyes of which the corners hold most, at their mean densities.
+fn film(corners: &Corners<'_>) -> Glow {
+    let of_corners = || {
+        corners.iter().flat_map(|(weight, corner)| {
+            [0, 1].map(|k| (corner.dyes[k], weight * f64::from(corner.hue[k])))
+        })
+    };
+    let mean = |dye: u8| of_corners().fold(0.0, |sum, (d, a)| if d == dye { sum + a } else { sum });
+    let densest = |except: Option<u8>| {
+        let others = of_corners().filter(|(dye, a)| Some(*dye) != except && *a > 0.0);
+        others.fold(None, |most: Option<(u8, f64)>, (dye, _)| {
+            let density = mean(dye);
+            if most.is_some_and(|(_, known)| known >= density) {
+                most
+            } else {
+                Some((dye, density))
+            }
+        })
+    };
+    let Some((first, density)) = densest(None) else { return PASSIVE };
+    let (second, second_density) = densest(Some(first)).unwrap_or((first, 0.0));
+    let dyes = [first, second].map(usize::from);
+    Glow { family: Family::Film(dyes), numbers: [density, second_density, 0.0] }
 }
 
 /// The fluorescence of one corner.
@@ -104,7 +135,7 @@ fn glow_around(
     model: &Model,
 ) -> Glow {
     let (reach, ring) = match model {
-        Model::Reflectance => return Glow { family: Family::Passive, numbers: [0.0; 3] },
+        Model::Reflectance | Model::Film(_) => return PASSIVE,
         Model::Analytic(_) => (BELL_REACH, f64::INFINITY),
         Model::Dyes(dyes) if dyes.pairs() < 3 => ([RING_REACH, 0.0], f64::INFINITY),
         Model::Dyes(dyes) => ([RING_REACH, 0.0], dyes.pairs() as f64),
@@ -112,7 +143,7 @@ fn glow_around(
     let center = [f64::from(heaviest.hue[0]), f64::from(heaviest.hue[1])];
     let (mut total, mut sum) = (0.0, [0.0; 2]);
     for (weight, corner) in corners {
-        let share = weight * f64::from(corner.concentration);
+        let share = weight * f64::from(corner.dose);
         let mut off = f64::from(corner.hue[0]) - center[0];
         let other = f64::from(corner.hue[1]) - center[1];
         if off.abs() > 0.5 * ring {

@@ -2,7 +2,8 @@
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, dispatch, f32x8};
-use upglow::{AnalyticModel, Model, ModelOnGrid};
+use upglow::{AnalyticModel, Emitted, Model, ModelOnGrid};
+use upglow_color::Grid;
 use upglow_color::rounding::to_single;
 
 use crate::problem::parabola::{Parabola, scaled};
@@ -29,10 +30,56 @@ pub(super) struct Absorber {
     weighted: [SingleLanes; 3],
 }
 
+/// What lies over a reflectance and takes light from it.
+trait Veil {
+    /// The light that its derivatives are sums of, `r` being what the reflectance returns of all light.
+    fn seen<S: Simd>(&self, simd: S, at: usize, r: f32x8<S>) -> f32x8<S>;
+
+    /// The share of the light that it lets pass.
+    fn passed<S: Simd>(&self, simd: S, at: usize) -> f32x8<S>;
+}
+
+/// Two absorbers with their concentrations.
+#[derive(Clone, Copy, Debug)]
+struct Diluted<'a> {
+    absorbers: [&'a Absorber; 2],
+    shares: [f32; 2],
+}
+
+impl Veil for Diluted<'_> {
+    #[inline(always)]
+    fn seen<S: Simd>(&self, _: S, _: usize, r: f32x8<S>) -> f32x8<S> {
+        r
+    }
+
+    #[inline(always)]
+    fn passed<S: Simd>(&self, simd: S, at: usize) -> f32x8<S> {
+        let [first, second] = &self.absorbers;
+        let [share_a, share_b] = self.shares.map(|share| f32x8::splat(simd, share));
+        let absorbed = share_a * first.curve.at(simd, at) + share_b * second.curve.at(simd, at);
+        f32x8::splat(simd, 1.0) - absorbed
+    }
+}
+
+/// A film: the share of light that it lets pass.
+impl Veil for SingleLanes {
+    #[inline(always)]
+    fn seen<S: Simd>(&self, simd: S, at: usize, r: f32x8<S>) -> f32x8<S> {
+        r * self.at(simd, at)
+    }
+
+    #[inline(always)]
+    fn passed<S: Simd>(&self, simd: S, at: usize) -> f32x8<S> {
+        self.at(simd, at)
+    }
+}
+
 /// Curves and weights of the sums.
 #[derive(Clone, Debug)]
 pub(super) struct SingleSums {
     simd_level: Level,
+    /// The first visible wavelength's place in the grid.
+    first: usize,
     t: SingleLanes,
     weights: [SingleLanes; 3],
     /// The weights times the parabola that is 1 at one chart wavelength and 0 at the others,
@@ -40,7 +87,7 @@ pub(super) struct SingleSums {
     chart_weights: [[SingleLanes; 3]; 3],
     /// Those parabolas, `[chart wavelength][coefficient]`.
     pub(super) chart: [Parabola; 3],
-    /// Dyes in ring order.
+    /// Dyes in the order of their set.
     pub(super) dyes: Vec<Absorber>,
     pub(super) clear: Absorber,
     bells: Option<Bells>,
@@ -53,7 +100,7 @@ pub(super) struct Shown {
     /// Derivatives of the color with respect to the parabola's coefficients of 1, d, d², or to its values
     /// at the chart wavelengths.
     pub(super) by: [[f32; 3]; 3],
-    /// ∫ w·absorption·r for two absorbers.
+    /// ∫ w·absorption·r for two absorbers; in a film r is what passes.
     pub(super) seen: [[f32; 3]; 2],
 }
 
@@ -87,23 +134,20 @@ impl SingleSums {
             [0, 1, 2].map(|k| visible(&|i| all[i][k] * (q0 + t(i) * (q1 + t(i) * q2))))
         });
         let absorber = |curve: SingleLanes| Absorber::new(curve, &weights);
-        let dyes = match model.model() {
-            Model::Dyes(dyes) => (0..dyes.curves().len())
-                .map(|dye| absorber(visible(&|i| model.dye_absorption(dye)[i])))
-                .collect(),
-            _ => Vec::new(),
-        };
+        let dyes = model.model().dyes().map_or(0, |dyes| dyes.curves().len());
+        let dyes = (0..dyes).map(|dye| absorber(visible(&|i| model.dye_absorption(dye)[i])));
         let bells = match model.model() {
             Model::Analytic(bells) => Some(Bells::new(bells, model, first)),
             _ => None,
         };
         Self {
             simd_level: Level::new(),
+            first,
             t: visible(&t),
             weights,
             chart_weights,
             chart,
-            dyes,
+            dyes: dyes.collect(),
             clear: absorber(SingleLanes::ZERO),
             bells,
         }
@@ -155,6 +199,21 @@ impl SingleSums {
         Shown { color: totals(color), by: by_totals(by), seen: [[0.0; 3]; 2] }
     }
 
+    /// What a film of two dyes emits at these optical densities, and the share of light that it lets pass.
+    pub(super) fn film(
+        &self,
+        model: &ModelOnGrid,
+        dyes: [usize; 2],
+        densities: [f64; 2],
+    ) -> (Emitted<2>, SingleLanes) {
+        const GRID: usize = Grid::FIT.len();
+        let mut passed = [0.0; GRID + LANES];
+        let emitted = model.emitted_by_film_in_single(dyes, densities, &mut passed[..GRID]);
+        let mut visible = SingleLanes::ZERO;
+        visible.0.copy_from_slice(&passed[self.first..self.first + LANES]);
+        (emitted, visible)
+    }
+
     /// The color of a reflectance behind two absorbers with these concentrations, in half the time that
     /// derivatives take.
     pub(super) fn color(
@@ -163,11 +222,21 @@ impl SingleSums {
         absorbers: [&Absorber; 2],
         shares: [f64; 2],
     ) -> [f32; 3] {
-        let parabola = single_parabola(parabola);
         let shares = [to_single(shares[0]), to_single(shares[1])];
+        self.color_behind(parabola, &Diluted { absorbers, shares })
+    }
+
+    /// The color of a reflectance behind a film that lets this share of light pass.
+    pub(super) fn color_under_film(&self, parabola: &Parabola, passed: &SingleLanes) -> [f32; 3] {
+        self.color_behind(parabola, passed)
+    }
+
+    #[inline(always)]
+    fn color_behind(&self, parabola: &Parabola, veil: &impl Veil) -> [f32; 3] {
+        let parabola = single_parabola(parabola);
         dispatch!(self.simd_level, simd => simd.vectorize(
             #[inline(always)]
-            || self.color_in_vectors(simd, parabola, absorbers, shares),
+            || self.color_in_vectors(simd, parabola, veil),
         ))
     }
 
@@ -176,20 +245,17 @@ impl SingleSums {
         &self,
         simd: S,
         [q0, q1, q2]: [f32; 3],
-        [first, second]: [&Absorber; 2],
-        shares: [f32; 2],
+        veil: &impl Veil,
     ) -> [f32; 3] {
         let splat = |v: f32| f32x8::splat(simd, v);
         let [q0, q1, q2] = [splat(q0), splat(q1), splat(q2)];
-        let [share_a, share_b] = [splat(shares[0]), splat(shares[1])];
         let (half, one, zero) = (splat(0.5), splat(1.0), splat(0.0));
         let mut color = [zero; 3];
         for at in (0..LANES).step_by(WIDTH) {
             let t = self.t.at(simd, at);
             let x = q0 + t * (q1 + t * q2);
             let r = half + x * (half * (one / (one + x * x).sqrt()));
-            let absorbed = share_a * first.curve.at(simd, at) + share_b * second.curve.at(simd, at);
-            let left = r * (one - absorbed);
+            let left = r * veil.passed(simd, at);
             for k in 0..3 {
                 color[k] += left * self.weights[k].at(simd, at);
             }
@@ -206,14 +272,43 @@ impl SingleSums {
         absorbers: [&Absorber; 2],
         shares: [f64; 2],
     ) -> Shown {
-        let (center, parabola) = (to_single(center), single_parabola(parabola));
         let shares = [to_single(shares[0]), to_single(shares[1])];
+        let veil = Diluted { absorbers, shares };
+        let mut shown = self.reflect_behind(center, parabola, absorbers, &veil);
+        let Shown { color, seen, .. } = &mut shown;
+        for k in 0..3 {
+            color[k] -= shares[0] * seen[0][k] + shares[1] * seen[1][k];
+        }
+        shown
+    }
+
+    /// The same behind a film of two dyes that lets this share of light pass.
+    pub(super) fn reflect_under_film(
+        &self,
+        center: f64,
+        parabola: &Parabola,
+        dyes: [usize; 2],
+        passed: &SingleLanes,
+    ) -> Shown {
+        self.reflect_behind(center, parabola, dyes.map(|dye| &self.dyes[dye]), passed)
+    }
+
+    #[inline(always)]
+    fn reflect_behind(
+        &self,
+        center: f64,
+        parabola: &Parabola,
+        absorbers: [&Absorber; 2],
+        veil: &impl Veil,
+    ) -> Shown {
+        let (center, parabola) = (to_single(center), single_parabola(parabola));
         dispatch!(self.simd_level, simd => simd.vectorize(
             #[inline(always)]
-            || self.reflect_in_vectors(simd, center, parabola, absorbers, shares),
+            || self.reflect_in_vectors(simd, center, parabola, absorbers, veil),
         ))
     }
 
+    /// The color is that of [`Veil::seen`].
     #[inline(always)]
     fn reflect_in_vectors<S: Simd>(
         &self,
@@ -221,12 +316,11 @@ impl SingleSums {
         center: f32,
         parabola: [f32; 3],
         [first, second]: [&Absorber; 2],
-        shares: [f32; 2],
+        veil: &impl Veil,
     ) -> Shown {
         let splat = |v: f32| f32x8::splat(simd, v);
         let ([p, b, k], center) = (parabola, splat(center));
         let [p, b, k] = [splat(p), splat(b), splat(k)];
-        let [share_a, share_b] = [splat(shares[0]), splat(shares[1])];
         let (half, one, zero) = (splat(0.5), splat(1.0), splat(0.0));
         let mut slopes = [zero; LANES / WIDTH];
         let mut color = [zero; 3];
@@ -237,9 +331,8 @@ impl SingleSums {
             let x = p + d * (b + d * k);
             let inverse = one / (one + x * x).sqrt();
             let half_inverse = half * inverse;
-            let r = half + x * half_inverse;
-            let absorbed = share_a * first.curve.at(simd, at) + share_b * second.curve.at(simd, at);
-            *slope = half_inverse * (inverse * inverse) * (one - absorbed);
+            let r = veil.seen(simd, at, half + x * half_inverse);
+            *slope = half_inverse * (inverse * inverse) * veil.passed(simd, at);
             for k in 0..3 {
                 color[k] += r * self.weights[k].at(simd, at);
                 seen[0][k] += r * first.weighted[k].at(simd, at);
@@ -259,11 +352,7 @@ impl SingleSums {
                 by[2][k] += slope_dd * w;
             }
         }
-        let (mut color, seen) = (totals(color), [totals(seen[0]), totals(seen[1])]);
-        for k in 0..3 {
-            color[k] -= shares[0] * seen[0][k] + shares[1] * seen[1][k];
-        }
-        Shown { color, by: by_totals(by), seen }
+        Shown { color: totals(color), by: by_totals(by), seen: [totals(seen[0]), totals(seen[1])] }
     }
 
     /// The absorption of a bell around `center_nm`, and its derivative with respect to the center, 1/nm.
@@ -365,12 +454,21 @@ fn single_parabola([q0, q1, q2]: &Parabola) -> [f32; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use upglow::{DyeModel, DyeOptions, DyeSet, Edge, Fluorescence, Material};
+    use upglow::{
+        Accounting, DyeModel, DyeOptions, DyeSet, Edge, FilmModel, Fluorescence, Material,
+        QuantumYield,
+    };
     use upglow_color::{Contract, Grid};
 
     fn dyes() -> ModelOnGrid {
         let dyes = DyeModel::new(DyeSet::named("konig8").unwrap(), DyeOptions::default()).unwrap();
         ModelOnGrid::new(&Model::Dyes(dyes), &Contract::default().on(Grid::FIT))
+    }
+
+    fn film() -> ModelOnGrid {
+        let set = DyeSet::named("konig8").unwrap();
+        let film = FilmModel::new(set, Accounting::Photon, QuantumYield::Measured).unwrap();
+        ModelOnGrid::new(&Model::Film(film), &Contract::default().on(Grid::FIT))
     }
 
     /// Edge (t), level, slope (1/nm), and shares of two dyes.
@@ -399,6 +497,45 @@ mod tests {
                 (shown.color, shown.by, shown.seen, chart.color, chart.by, color)
             });
             assert_eq!(colors[0], colors[1]);
+        }
+    }
+
+    #[test]
+    fn films_have_the_same_bits_with_and_without_wide_vectors() {
+        let model = film();
+        let sums = SingleSums::new(&model);
+        let plain = SingleSums { simd_level: Level::baseline(), ..sums.clone() };
+        for (numbers, densities) in MATERIALS {
+            let (_, passed) = sums.film(&model, [2, 6], densities);
+            let colors = [&sums, &plain].map(|sums| {
+                let parabola = parabola(numbers);
+                let shown = sums.reflect_under_film(numbers[0], &parabola, [2, 6], &passed);
+                (shown.color, shown.by, shown.seen, sums.color_under_film(&parabola, &passed))
+            });
+            assert_eq!(colors[0], colors[1]);
+        }
+    }
+
+    #[test]
+    fn colors_of_films_are_those_of_the_model() {
+        // Single precision of numbers near 10 under the root.
+        const SINGLE: f64 = 2e-6;
+        let model = film();
+        let sums = SingleSums::new(&model);
+        for (numbers, [a, b]) in MATERIALS {
+            let [e, level, slope_per_nm] = numbers;
+            let edge = Edge { edge_nm: 565.0 + 100.0 * e, level, slope_per_nm };
+            for densities in [[a, b], [5.0 * a, 3.0 * b]] {
+                let (emitted, passed) = sums.film(&model, [2, 6], densities);
+                let shown = sums.reflect_under_film(e, &parabola(numbers), [2, 6], &passed);
+                let fluorescence = Fluorescence::film((2, densities[0]), (6, densities[1]));
+                let material = Material { reflectance: edge.to_sigmoid(), fluorescence };
+                let expected = model.color(material).0;
+                for k in 0..3 {
+                    let off = f64::from(shown.color[k]) + emitted.color[k] - expected[k];
+                    assert!(off.abs() < SINGLE, "{numbers:?} {off}");
+                }
+            }
         }
     }
 

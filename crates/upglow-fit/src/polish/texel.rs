@@ -6,7 +6,8 @@ use upglow_color::{Goal, LinearRgb, Matrix3, Metric, Xyz};
 use crate::fit::EXACT;
 use crate::polish::Polisher;
 use crate::polish::candidate::{
-    Candidate, STEEPNESS_WEIGHT, ValueShape, bounds, inside, value_bounds,
+    Candidate, STEEPNESS_WEIGHT, Steepness, ValueShape, bounds, edge_of_unknowns, inside, unknowns,
+    value_bounds,
 };
 use crate::polish::corner::{Corners, all, mean};
 use crate::polish::descent::{
@@ -43,6 +44,10 @@ const ROUND_STEPS: usize = 2;
 const WORSE_THAN_BLEND: f64 = 0.5;
 /// If a material misses by this much more than the blend, ΔE00, all starts are tried.
 const PLAIN_TO_SEE: f64 = 2.0;
+
+/// Corners that exceed the limit of fits by no more than this are not steeper: fits keep a margin of half
+/// of it, and rounding to single precision is a tenth of that.
+const STEEPER: f64 = 1.0 + 2e-6;
 
 /// One texel.
 pub(super) struct Texel<'p, 'c, 'n> {
@@ -172,6 +177,22 @@ impl<'p, 'c, 'n> Texel<'p, 'c, 'n> {
         direct.unwrap_or_else(|| self.nearest(&glow, is_hopeless))
     }
 
+    /// The slope limit: that of the cube for this family, or that of the steepest corner, 1/nm.
+    #[inline(always)]
+    fn slope_limit_per_nm(&self, family: Family) -> f64 {
+        let limits = &self.polisher.slope_limits_per_nm;
+        let limit = if family == Family::Passive { limits.alone } else { limits.under_dyes };
+        let mut steepest = limit * STEEPER;
+        let mut found = limit;
+        for (weight, corner) in self.corners {
+            let slope = corner.steepest_slope_per_nm();
+            if *weight > 0.0 && slope > steepest {
+                (steepest, found) = (slope, slope);
+            }
+        }
+        found
+    }
+
     /// The mean of the corners' materials after one step to the color; its distance is not known.
     pub(super) fn interpolate(&self) -> Node {
         if let Some(gray) = self.gray() {
@@ -180,7 +201,7 @@ impl<'p, 'c, 'n> Texel<'p, 'c, 'n> {
         let polisher = self.polisher;
         let glow = start::glow(self.corners, polisher.cube.model());
         if self.is_hopeless() {
-            return self.within_limit(start::edge(self.corners), glow.fluorescence());
+            return self.within_limit(start::edge(self.corners), &glow);
         }
         let [a, b, d] = inside(self.mean_values());
         if glow.family == Family::Passive {
@@ -188,23 +209,24 @@ impl<'p, 'c, 'n> Texel<'p, 'c, 'n> {
             let shown = polisher.sums.reflect_chart(&shape.parabola);
             let next = self.passive_step(&[a, b, d], &shape, &shown);
             let shape = next.map_or(shape, |values| polisher.shape(&values));
-            return self.within_limit(shape.edge(), Fluorescence::None);
+            return self.within_limit(shape.edge(), &glow);
         }
         let [c, u, v] = glow.numbers;
-        let candidate = polisher.candidate([a, b, d, c, u, v]);
+        let limit = self.slope_limit_per_nm(glow.family);
+        let candidate = polisher.candidate([a, b, d, c, u, v], limit);
         let here = polisher.point_of_values(glow.family, &candidate);
         let bounds = bounds(glow.family, polisher.cube.model());
-        let candidate = self.glowing_step(&here, &candidate, bounds);
+        let candidate = self.glowing_step(&here, &candidate, bounds, limit);
         let [.., c, u, v] = candidate.x;
-        let fluorescence = Glow { family: glow.family, numbers: [c, u, v] }.fluorescence();
-        self.within_limit(candidate.shape.edge(), fluorescence)
+        let glow = Glow { family: glow.family, numbers: [c, u, v] };
+        self.within_limit(candidate.shape.edge(), &glow)
     }
 
     /// A material with its slope reduced to the limit.
-    fn within_limit(&self, edge: Edge, fluorescence: Fluorescence) -> Node {
-        let limit = self.polisher.slope_limit_per_nm;
+    fn within_limit(&self, edge: Edge, glow: &Glow) -> Node {
+        let limit = self.slope_limit_per_nm(glow.family);
         let slope_per_nm = edge.slope_per_nm.clamp(-limit, limit);
-        Node::new(Edge { slope_per_nm, ..edge }, fluorescence, f64::NAN)
+        Node::new(Edge { slope_per_nm, ..edge }, glow.fluorescence(), f64::NAN)
     }
 
     /// A flat reflectance if the color is a gray.
@@ -230,7 +252,8 @@ impl<'p, 'c, 'n> Texel<'p, 'c, 'n> {
             let lab = self.lab.residual(&[f64::from(x), f64::from(y), f64::from(z)]);
             let squared = dot(&lab, &lab);
             if squared <= NEAR * NEAR {
-                if self.polisher.steepness(&shape.parabola).squared > 1.0 {
+                let limit = self.slope_limit_per_nm(Family::Passive);
+                if Steepness::of(&shape.parabola, limit).squared > 1.0 {
                     return None;
                 }
                 return Some(node(shape.edge(), Fluorescence::None, squared.sqrt()));
@@ -263,9 +286,10 @@ impl<'p, 'c, 'n> Texel<'p, 'c, 'n> {
     fn glowing(&self, glow: &Glow) -> Option<Node> {
         let polisher = self.polisher;
         let family = glow.family;
+        let limit = self.slope_limit_per_nm(family);
         let bounds = bounds(family, polisher.cube.model());
         let ([a, b, d], [c, u, v]) = (inside(self.mean_values()), glow.numbers);
-        let mut candidate = polisher.candidate([a, b, d, c, u, v]);
+        let mut candidate = polisher.candidate([a, b, d, c, u, v], limit);
         let mut here = polisher.point_of_values(family, &candidate);
         let mut norm = here.norm(&self.lab);
         let mut setbacks = 0;
@@ -276,7 +300,7 @@ impl<'p, 'c, 'n> Texel<'p, 'c, 'n> {
                 let fluorescence = Glow { family, numbers: [c, u, v] }.fluorescence();
                 return Some(node(candidate.shape.edge(), fluorescence, norm));
             }
-            let next = self.glowing_step(&here, &candidate, bounds);
+            let next = self.glowing_step(&here, &candidate, bounds, limit);
             let there = if norm <= DERIVATIVES_HOLD {
                 let color = polisher.color_of_values(family, &next);
                 Point { x: next.x, color, by: here.by }
@@ -297,26 +321,28 @@ impl<'p, 'c, 'n> Texel<'p, 'c, 'n> {
 
     /// The candidate after a step in the chart of values; `bounds` are those of the fluorescence.
     #[inline(always)]
-    fn glowing_step(&self, here: &Point, candidate: &Candidate, mut bounds: Bounds) -> Candidate {
+    fn glowing_step(
+        &self,
+        here: &Point,
+        candidate: &Candidate,
+        mut bounds: Bounds,
+        slope_limit_per_nm: f64,
+    ) -> Candidate {
+        let polisher = self.polisher;
         for i in 0..3 {
             bounds[i] = value_bounds(candidate.x[i]);
         }
         if candidate.steepness.squared <= 1.0 {
             let (residual, by) = here.measured(&self.lab);
             let next = shortest_step(&here.x, &residual, &by, &bounds, LEAST_DAMPING);
-            let next = self.polisher.candidate(next);
+            let next = polisher.candidate(next, slope_limit_per_nm);
             if next.steepness.squared <= 1.0 {
                 return next;
             }
         }
-        let polisher = self.polisher;
-        polisher.candidate(polisher.step_along_limit(
-            here,
-            candidate,
-            &self.lab,
-            &bounds,
-            LEAST_DAMPING,
-        ))
+        let next =
+            polisher.step_along_limit(here, candidate, &self.lab, &bounds, slope_limit_per_nm);
+        polisher.candidate(next, slope_limit_per_nm)
     }
 
     /// The nearest material found from several starts, in the chart of edges.
@@ -346,7 +372,7 @@ impl<'p, 'c, 'n> Texel<'p, 'c, 'n> {
                 best = best.or(self.approach(&goal, corner.edge(), &glow));
             }
         }
-        let may_glow = !all(self.corners, |c| c.concentration == 0.0);
+        let may_glow = !all(self.corners, |c| c.dose == 0.0);
         if may_glow
             && blended <= EXACT
             && !is_good(&best)
@@ -363,9 +389,10 @@ impl<'p, 'c, 'n> Texel<'p, 'c, 'n> {
         let polisher = self.polisher;
         let family = glow.family;
         let bounds = bounds(family, polisher.cube.model());
-        let x = polisher.unknowns(edge, glow, &bounds);
+        let limit = self.slope_limit_per_nm(family);
+        let x = unknowns(edge, glow, &bounds, limit);
         let mut best: Option<(Unknowns, f64)> = None;
-        let mut here = polisher.point_of_edge(family, x);
+        let mut here = polisher.point_of_edge(family, x, limit);
         for round in 0..=ROUNDS {
             let around = Linear::new(goal, here.color);
             let norm = dot(&around.residual, &around.residual).sqrt();
@@ -376,13 +403,13 @@ impl<'p, 'c, 'n> Texel<'p, 'c, 'n> {
             if round == ROUNDS || norm <= 0.5 * EXACT || gain < LEAST_GAIN {
                 break;
             }
-            let eval = |x| polisher.point_of_edge(family, x);
+            let eval = |x| polisher.point_of_edge(family, x, limit);
             here = here.descend(&around, &bounds, ROUND_STEPS, eval);
         }
         let (x, de2000) = best.unwrap_or((x, f64::INFINITY));
         let [.., c, u, v] = x;
         let fluorescence = Glow { family, numbers: [c, u, v] }.fluorescence();
-        let edge = polisher.edge_of_unknowns(&x);
+        let edge = edge_of_unknowns(&x, limit);
         Found { node: Node::new(edge, fluorescence, de2000), de2000 }
     }
 

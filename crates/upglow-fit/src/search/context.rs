@@ -1,8 +1,9 @@
 //! What all fits under one contract, with one model, have in common.
 
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use upglow::{Edge, Fluorescence, Model, ModelOnGrid};
+use upglow::{Edge, Fluorescence, Material, Model, ModelOnGrid};
 use upglow_color::{Contract, Grid, Xyz};
 
 use super::starts::StartTable;
@@ -13,27 +14,41 @@ use crate::problem::sums::{CLEAR, Lanes, Sums, lanes_from};
 #[derive(Debug)]
 pub(crate) struct Context {
     pub(crate) model: ModelOnGrid,
-    pub(crate) slope_limit_per_nm: f64,
     pub(crate) sums: Sums,
-    pub(crate) starts: StartTable,
     pub(crate) dye_lanes: Vec<Lanes>,
     /// How often residuals and derivatives were evaluated so far, in all fits.
     pub(crate) evaluations: AtomicU64,
 }
 
+/// A slope limit, and materials within it to start from.
+#[derive(Debug)]
+pub(crate) struct Stage {
+    pub(crate) slope_limit_per_nm: f64,
+    /// Made when a search first needs it.
+    starts: OnceLock<StartTable>,
+}
+
+impl Stage {
+    pub(crate) fn new(slope_limit_per_nm: f64) -> Self {
+        Self { slope_limit_per_nm, starts: OnceLock::new() }
+    }
+}
+
 impl Context {
-    pub(crate) fn new(contract: &Contract, model: &Model, slope_limit_per_nm: f64) -> Self {
+    pub(crate) fn new(contract: &Contract, model: &Model) -> Self {
         let model = ModelOnGrid::new(model, &contract.on(Grid::FIT));
         let sums = Sums::new(&model);
-        let dyes = match model.model() {
-            Model::Dyes(dyes) => dyes.curves().len(),
-            _ => 0,
-        };
+        let dyes = model.model().dyes().map_or(0, |dyes| dyes.curves().len());
         let dye_lanes: Vec<Lanes> =
             (0..dyes).map(|dye| sums.lanes(model.dye_absorption(dye))).collect();
-        let starts = StartTable::new(&model, &sums, &dye_lanes, slope_limit_per_nm);
-        let evaluations = AtomicU64::new(0);
-        Self { model, slope_limit_per_nm, sums, starts, dye_lanes, evaluations }
+        Self { model, sums, dye_lanes, evaluations: AtomicU64::new(0) }
+    }
+
+    /// The starts of a stage, which fluoresce if the model does.
+    pub(crate) fn starts<'s>(&self, stage: &'s Stage) -> &'s StartTable {
+        let Self { model, sums, dye_lanes, .. } = self;
+        let limit = stage.slope_limit_per_nm;
+        stage.starts.get_or_init(|| StartTable::new(model, sums, dye_lanes, limit))
     }
 
     pub(crate) fn count(&self, evaluations: usize) {
@@ -49,6 +64,10 @@ impl Context {
                 let absorbed = lanes_from(|i| c * ((1.0 - weight) * a[i] + weight * b[i]));
                 (absorbed, self.model.emitted_by_dyes(dyes, first, weight).color.into())
             }
+            (Fluorescence::Film { .. }, Model::Film(_)) => {
+                let reflectance = reflectance.to_sigmoid();
+                return self.model.color(Material { reflectance, fluorescence });
+            }
             (
                 Fluorescence::Analytic { emission_peak_nm, stokes_shift_nm, concentration: c },
                 Model::Analytic(bells),
@@ -61,6 +80,6 @@ impl Context {
             _ => (CLEAR, Xyz::default()),
         };
         let reflected = self.sums.reflect(parabola, &absorbed, []).color;
-        reflected + fluorescence.concentration() * emitted
+        reflected + fluorescence.dose() * emitted
     }
 }

@@ -3,7 +3,8 @@
 use upglow::{Edge, Fluorescence, Model, Sigmoid};
 use upglow_color::{Goal, Metric};
 
-use super::context::Context;
+use super::context::{Context, Stage};
+use super::starts::StartTable;
 use crate::fit::{Fit, Start};
 use crate::problem::parabola::{MIDDLE_NM, UNIT_NM};
 use crate::problem::solver::{Residuals, SolverOptions, Summary, solve};
@@ -13,6 +14,8 @@ use crate::problem::{BellProblem, DyeProblem, PassiveProblem, Shape};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Job<'c> {
     pub(crate) context: &'c Context,
+    /// The slope limit, and the starts within it.
+    pub(crate) stage: &'c Stage,
     pub(crate) goal: Goal,
 }
 
@@ -35,7 +38,7 @@ impl Job<'_> {
 
     /// A material as a fit, with its color differences.
     pub(crate) fn measured(&self, reflectance: Edge, fluorescence: Fluorescence) -> Fit {
-        let fluorescence = match fluorescence.concentration() {
+        let fluorescence = match fluorescence.dose() {
             c if c > 0.0 => fluorescence,
             _ => Fluorescence::None,
         };
@@ -49,16 +52,21 @@ impl Job<'_> {
         Fit { reflectance, fluorescence, distance, de2000, lab }
     }
 
+    /// The materials to start from.
+    pub(crate) fn starts(&self) -> &StartTable {
+        self.context.starts(self.stage)
+    }
+
     /// The coordinates in which the slope limit is a bound on one unknown.
     pub(crate) fn edge_shape(&self) -> Shape {
-        Shape::Edge { slope_limit_per_nm: self.context.slope_limit_per_nm }
+        Shape::Edge { slope_limit_per_nm: self.stage.slope_limit_per_nm }
     }
 
     /// Fits a material with `solve` from `start`, in the coordinates `shape`.
     pub(crate) fn follow(&self, start: Start, shape: Shape, solve: &impl Solve) -> Fit {
         let numbers = shape.numbers(start.reflectance);
         let [s0, s1, s2] = numbers;
-        let Self { goal, context: Context { model, sums, .. } } = *self;
+        let Self { goal, context: Context { model, sums, .. }, .. } = *self;
         match (start.fluorescence, self.context.model.model()) {
             (Fluorescence::Dyes { first, weight, concentration }, Model::Dyes(dyes)) => {
                 let lanes = &self.context.dye_lanes;
@@ -67,6 +75,13 @@ impl Job<'_> {
                 let x = [s0, s1, s2, concentration, weight];
                 let [s0, s1, s2, concentration, weight] = self.counted(solve.solve(&problem, x));
                 let fluorescence = Fluorescence::Dyes { first, weight, concentration };
+                self.measured(shape.edge([s0, s1, s2]), fluorescence)
+            }
+            (Fluorescence::Film { dyes, densities: [a, b] }, Model::Film(_)) => {
+                let problem = self.film_problem(shape, dyes);
+                let x = self.counted(solve.solve(&problem, [s0, s1, s2, a, b]));
+                let [s0, s1, s2, a, b] = x;
+                let fluorescence = Fluorescence::film((dyes[0], a), (dyes[1], b));
                 self.measured(shape.edge([s0, s1, s2]), fluorescence)
             }
             (

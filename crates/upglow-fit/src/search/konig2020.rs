@@ -63,7 +63,7 @@ impl Job<'_> {
     /// Reflectance alone. CIEDE2000 has no derivative at gray, so a fit by CIELAB goes first.
     fn passive(&self, parameters: Parameters) -> Fit {
         let gray = Sigmoid::flat(0.5).to_edge(MIDDLE_NM);
-        let slope_per_nm = self.context.slope_limit_per_nm / 2.0;
+        let slope_per_nm = self.stage.slope_limit_per_nm / 2.0;
         let starts = match parameters {
             Parameters::Coefficients => vec![gray],
             Parameters::Features => {
@@ -96,7 +96,7 @@ impl Job<'_> {
     }
 
     fn followed(&self, parameters: Parameters, start: Start) -> Fit {
-        let slope_limit_per_nm = self.context.slope_limit_per_nm;
+        let slope_limit_per_nm = self.stage.slope_limit_per_nm;
         match parameters {
             Parameters::Coefficients => {
                 let fit = self.follow(start, Shape::Free, &Penalized { slope_limit_per_nm });
@@ -111,7 +111,7 @@ impl Job<'_> {
 
     /// A fit with its slope reduced to the limit, which the penalty may let it exceed.
     fn held_at_limit(&self, fit: Fit) -> Fit {
-        let limit = self.context.slope_limit_per_nm;
+        let limit = self.stage.slope_limit_per_nm;
         let Edge { slope_per_nm, .. } = fit.reflectance;
         if slope_per_nm.abs() <= limit {
             return fit;
@@ -134,7 +134,7 @@ fn soft_shape(signed_width_nm: f64, slope_per_nm: f64) -> Edge {
 /// A fluorescence with each pair of dyes in turn.
 fn variants(model: &Model, fluorescence: Fluorescence) -> Vec<Fluorescence> {
     match model {
-        Model::Reflectance => vec![Fluorescence::None],
+        Model::Reflectance | Model::Film(_) => vec![Fluorescence::None],
         Model::Dyes(dyes) => {
             let (weight, concentration) = match fluorescence {
                 Fluorescence::Dyes { weight, concentration, .. } => (weight, concentration),

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use fearless_simd::{Level, Simd, dispatch};
-use upglow::{AnalyticModel, DyeModel, Edge, Fluorescence, Model, ModelOnGrid};
+use upglow::{AnalyticModel, DyeModel, Edge, FilmModel, Fluorescence, Model, ModelOnGrid};
 use upglow_color::rounding::to_single;
 use upglow_color::{Goal, Lab, Xyz, ciede2000, ciede2000_residuals, lab_from_xyz};
 
@@ -57,6 +57,8 @@ struct Variant {
     fluorescence: Fluorescence,
     /// Indices of the absorption curves, with their concentrations.
     absorbers: [(usize, f64); 2],
+    /// What a film lets pass.
+    passed: Option<Lanes>,
     emitted: Xyz,
 }
 
@@ -80,11 +82,19 @@ impl StartTable {
             let taken: Vec<Xyz> =
                 absorbers.iter().map(|a| sums.integrate(|i| r[i] * a[i])).collect();
             for variant in &variants {
-                let color = variant.color(reflected, &taken);
+                let color = match &variant.passed {
+                    Some(passed) => sums.integrate(|i| r[i] * passed[i]) + variant.emitted,
+                    None => variant.color(reflected, &taken),
+                };
                 let lab = lab_from_xyz(color, white);
                 let fluorescence = variant.fluorescence;
                 let bucket = match fluorescence {
                     Fluorescence::None => index as usize / per_kind,
+                    Fluorescence::Film { .. } => {
+                        variant.bucket
+                            + usize::from(shape.level > 0.0)
+                            + 2 * usize::from(shape.slope_per_nm > 0.0)
+                    }
                     _ => variant.bucket,
                 };
                 sorted.push((bucket, Entry { shape: index, fluorescence }, lab));
@@ -123,6 +133,10 @@ impl StartTable {
     /// Distance is CIEDE2000 linearized around the goal, a quadratic form: that finds the same starts
     /// as the full formula at a tenth of the cost.
     pub(crate) fn nearest(&self, goal: &Goal) -> Vec<Start> {
+        self.nearest_with_distance(goal).into_iter().map(|(_, start)| start).collect()
+    }
+
+    pub(crate) fn nearest_with_distance(&self, goal: &Goal) -> Vec<(f32, Start)> {
         let form = Form::around(goal);
         let mut best: Vec<(f32, usize)> = Vec::with_capacity(self.buckets.len());
         dispatch!(self.simd_level, simd => simd.vectorize(
@@ -134,7 +148,7 @@ impl StartTable {
             },
         ));
         best.sort_by(|x, y| x.0.total_cmp(&y.0));
-        best.into_iter().map(|(_, index)| self.start(index)).collect()
+        best.into_iter().map(|(at, index)| (at, self.start(index))).collect()
     }
 
     /// The nearest few starts of each bucket, by exact CIEDE2000.
@@ -271,9 +285,13 @@ fn variants(model: &ModelOnGrid, sums: &Sums) -> (Vec<Variant>, Vec<Lanes>) {
         Model::Reflectance => {
             let (absorbers, emitted) = ([(0, 0.0); 2], Xyz::default());
             let fluorescence = Fluorescence::None;
-            (vec![Variant { bucket: 0, fluorescence, absorbers, emitted }], Vec::new())
+            (
+                vec![Variant { bucket: 0, fluorescence, absorbers, passed: None, emitted }],
+                Vec::new(),
+            )
         }
         Model::Dyes(dyes) => (dye_variants(model, dyes), Vec::new()),
+        Model::Film(film) => (film_variants(model, film, sums), Vec::new()),
         Model::Analytic(bells) => bell_variants(model, bells, sums),
     }
 }
@@ -294,9 +312,43 @@ fn dye_variants(model: &ModelOnGrid, dyes: &DyeModel) -> Vec<Variant> {
                     bucket: 2 * first + usize::from(weight >= 0.5),
                     fluorescence: Fluorescence::Dyes { first, weight, concentration },
                     absorbers,
+                    passed: None,
                     emitted: concentration * emitted,
                 });
             }
+        }
+    }
+    variants
+}
+
+/// Optical densities of one dye, and of each of two.
+const SINGLE_DENSITIES: [f64; 4] = [0.15, 0.6, 1.8, 5.0];
+const PAIR_DENSITIES: [f64; 3] = [0.2, 0.9, 3.5];
+
+fn film_variants(model: &ModelOnGrid, film: &FilmModel, sums: &Sums) -> Vec<Variant> {
+    let count = film.dyes().curves().len();
+    let mut variants = Vec::new();
+    let mut passed = vec![0.0; model.wavelengths_nm().len()];
+    let mut add = |bucket: usize, first: (usize, f64), second: (usize, f64)| {
+        let fluorescence = Fluorescence::film(first, second);
+        let Fluorescence::Film { dyes, densities } = fluorescence else { return };
+        let emitted = Xyz::from(model.emitted_by_film(dyes, densities, &mut passed).color);
+        let passed = Some(sums.lanes(&passed));
+        variants.push(Variant { bucket, fluorescence, absorbers: [(0, 0.0); 2], passed, emitted });
+    };
+    let mut bucket = 0;
+    for i in 0..count {
+        for density in SINGLE_DENSITIES {
+            add(bucket, (i, density), (i, 0.0));
+        }
+        bucket += 4;
+        for j in i + 1..count {
+            for a in PAIR_DENSITIES {
+                for b in PAIR_DENSITIES {
+                    add(bucket, (i, a), (j, b));
+                }
+            }
+            bucket += 4;
         }
     }
     variants
@@ -324,6 +376,7 @@ fn bell_variants(
                         concentration,
                     },
                     absorbers: [(lanes.len() - 1, concentration), (0, 0.0)],
+                    passed: None,
                     emitted: concentration * emitted,
                 });
             }

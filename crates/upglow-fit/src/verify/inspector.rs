@@ -150,6 +150,9 @@ impl<'c> Inspector<'c> {
             if edge.slope_per_nm.abs() > steepest {
                 (steepest, nm) = (edge.slope_per_nm.abs(), Some(edge.edge_nm));
             }
+            if self.cube.node_material(index).fluorescence.dose() > 0.0 {
+                self.see(Law::SlopeUnderDyes, subject, steepest, nm, findings);
+            }
         }
         self.see(Law::Slope, subject, steepest, nm, findings);
     }
@@ -169,7 +172,7 @@ impl<'c> Inspector<'c> {
         let (most, _) = greatest(samples());
         let (negative_least, at) = greatest(samples().map(|r| -r));
         self.see(Law::GrayFlat, subject, most + negative_least, self.nm(at), findings);
-        let concentration = mixture.parts().map(|(w, m)| w * m.fluorescence.concentration()).sum();
+        let concentration = mixture.parts().map(|(w, m)| w * m.fluorescence.dose()).sum();
         self.see(Law::GrayPassive, subject, concentration, None, findings);
         let is_node = matches!(subject, Subject::Node(_));
         if is_node || self.interpolation == Interpolation::Blend {

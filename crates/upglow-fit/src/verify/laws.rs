@@ -7,6 +7,7 @@ use super::VerifyOptions;
 use super::finding::Outcome;
 use super::{Check, Verdict};
 use crate::cube::CubeSummary;
+use crate::options::SLOPE_RANGE_PER_NM;
 
 /// A law about single colors. A new one is a variant, an entry in [`LAWS`], its texts, its [`Rule`],
 /// and a call of `Inspector::see` with its values.
@@ -15,6 +16,7 @@ pub(super) enum Law {
     Energy,
     Bounds,
     Slope,
+    SlopeUnderDyes,
     GrayFlat,
     GrayPassive,
     GrayValue,
@@ -25,10 +27,11 @@ pub(super) enum Law {
 }
 
 /// Every law, in the order of the report.
-pub(super) const LAWS: [Law; 10] = [
+pub(super) const LAWS: [Law; 11] = [
     Law::Energy,
     Law::Bounds,
     Law::Slope,
+    Law::SlopeUnderDyes,
     Law::GrayFlat,
     Law::GrayPassive,
     Law::GrayValue,
@@ -79,12 +82,15 @@ impl Law {
         let [name, about, unit] = self.texts();
         let fixed = |limit, tolerance| (Some(limit), tolerance, true);
         let gray = |limit| (Some(limit), 0.0, cube.contract().adaptation == Adaptation::Bradford);
+        let slope = |limit: Option<f64>| (limit, limit.unwrap_or(0.0) * SLOPE_ROUNDING, true);
         let (limit, tolerance, applies) = match self {
             Self::Energy => fixed(1.0, ROUNDING),
             Self::Bounds => fixed(0.0, ROUNDING),
-            Self::Slope => {
-                let limit = cube.fit().slope_max_per_nm;
-                (limit, limit.unwrap_or(0.0) * SLOPE_ROUNDING, true)
+            Self::Slope if cube.fit().relaxed => slope(Some(SLOPE_RANGE_PER_NM[1])),
+            Self::Slope => slope(cube.fit().slope_max_per_nm),
+            Self::SlopeUnderDyes => {
+                let (limit, tolerance, _) = slope(cube.fit().slope_under_dyes_per_nm);
+                (limit, tolerance, !cube.fit().relaxed)
             }
             Self::GrayFlat | Self::GrayValue => gray(GRAY_TOLERANCE),
             Self::GrayPassive => gray(0.0),
@@ -107,8 +113,13 @@ impl Law {
                 ["bounds", "how far a reflected or re-radiated share lies outside 0 to 1", ""]
             }
             Self::Slope => ["slope", "steepest reflectance", "1/nm"],
+            Self::SlopeUnderDyes => {
+                ["slope-under-dyes", "steepest reflectance of a fluorescent node", "1/nm"]
+            }
             Self::GrayFlat => ["gray-flat", "variation of a gray's reflectance", ""],
-            Self::GrayPassive => ["gray-passive", "concentration of dyes in a gray", ""],
+            Self::GrayPassive => {
+                ["gray-passive", "concentration or optical density of dyes in a gray", ""]
+            }
             Self::GrayValue => ["gray-value", "a gray's reflectance against its value", ""],
             Self::WhiteBlack => {
                 ["white-black", "white's reflectance against 1, black's against 0", ""]

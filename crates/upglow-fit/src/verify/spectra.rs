@@ -3,6 +3,8 @@
 //! This works on whole arrays and shares no formula with the run-time library, which evaluates one
 //! wavelength at a time. Each run compares the two for some colors.
 
+use std::f64::consts::LN_10;
+
 use upglow::{Accounting, DyeCurves, DyeModel, Fluorescence, Material, Mixing, Model, Sigmoid};
 use upglow_color::rounding::whole;
 use upglow_color::{Colorimetry, Contract, Grid, Xyz};
@@ -53,7 +55,7 @@ pub(super) struct Spectra {
     pub(super) reflectance: Box<Samples>,
     /// dr/dλ, 1/nm.
     pub(super) slope_per_nm: Box<Samples>,
-    /// Share of light reflected at its own wavelength, (1 − c·a)·r.
+    /// Share of light reflected at its own wavelength: r, less what is absorbed.
     pub(super) reflected: Box<Samples>,
     /// Share of light re-radiated at other wavelengths.
     pub(super) returned: Box<Samples>,
@@ -75,8 +77,19 @@ struct Lobe {
 }
 
 enum Absorber {
-    Dyes { first: usize, second: usize, weight: f64 },
-    Bell { center_nm: f64 },
+    Dyes {
+        first: usize,
+        second: usize,
+        weight: f64,
+    },
+    /// A dye in a film together with another, each with its optical density.
+    InFilm {
+        own: (usize, f64),
+        other: (usize, f64),
+    },
+    Bell {
+        center_nm: f64,
+    },
 }
 
 fn zeros() -> Box<Samples> {
@@ -137,12 +150,8 @@ impl<'m> Sampler<'m> {
     pub(super) fn new(contract: &Contract, model: &'m Model) -> Self {
         let (fine, fit) =
             (StridedSums::new(contract, Grid::FINE, 0), StridedSums::new(contract, Grid::FIT, 1));
-        let dyes = match model {
-            Model::Dyes(dyes) => {
-                dyes.curves().iter().map(|c| SampledDye::new(c, &fine, &fit)).collect()
-            }
-            _ => Vec::new(),
-        };
+        let curves = model.dyes().map_or(&[][..], DyeModel::curves);
+        let dyes = curves.iter().map(|c| SampledDye::new(c, &fine, &fit)).collect();
         Self { model, fine, fit, wavelengths_nm: sampled(Grid::FINE.wavelengths_nm()), dyes }
     }
 
@@ -186,6 +195,13 @@ impl<'m> Sampler<'m> {
                     absorbed[i] = lobe.strength * ((1.0 - weight) * a[i] + weight * b[i]);
                 }
             }
+            (&Absorber::InFilm { own: (dye, density), other: (other, other_density) }, _) => {
+                let (a, b) = (&self.dyes[dye].absorption, &self.dyes[other].absorption);
+                for i in 0..FINE {
+                    let own = density * a[i];
+                    absorbed[i] = lobe.strength * absorbed_in_film(own, other_density * b[i]);
+                }
+            }
             (&Absorber::Bell { center_nm }, Model::Analytic(model)) => {
                 for i in 0..FINE {
                     let (share, _) = model.absorption(center_nm, self.wavelengths_nm[i]);
@@ -211,6 +227,17 @@ impl<'m> Sampler<'m> {
                 }
             }
             (
+                Fluorescence::Film { dyes: [first, second], densities: [most, least] },
+                Model::Film(film),
+            ) => {
+                let dyes = [(first, most), (second, least)];
+                let lobe = |own: (usize, f64), other| {
+                    let absorber = Absorber::InFilm { own, other };
+                    (own.1 > 0.0).then(|| self.lobe_of_dye(film.dyes(), own.0, absorber, 1.0))
+                };
+                [lobe(dyes[0], dyes[1]), lobe(dyes[1], dyes[0])]
+            }
+            (
                 Fluorescence::Analytic { emission_peak_nm, stokes_shift_nm, concentration },
                 Model::Analytic(_),
             ) => [self.bell_lobe(emission_peak_nm, stokes_shift_nm, concentration), None],
@@ -233,9 +260,14 @@ impl<'m> Sampler<'m> {
     }
 
     fn lone_lobe(&self, model: &DyeModel, dye: usize, strength: f64) -> Lobe {
+        let absorber = Absorber::Dyes { first: dye, second: dye, weight: 0.0 };
+        self.lobe_of_dye(model, dye, absorber, strength)
+    }
+
+    fn lobe_of_dye(&self, model: &DyeModel, dye: usize, absorber: Absorber, strength: f64) -> Lobe {
         let sampled = &self.dyes[dye];
         Lobe {
-            absorber: Absorber::Dyes { first: dye, second: dye, weight: 0.0 },
+            absorber,
             strength,
             quantum_yield: sampled.quantum_yield,
             accounting: model.options().accounting,
@@ -256,6 +288,15 @@ impl<'m> Sampler<'m> {
             mean_emission_nm: peak_nm,
             stimulus: [&self.fine, &self.fit].map(stimulus),
         })
+    }
+}
+
+/// What a part of a film with the optical density `own` absorbs beside one with the density `other`:
+/// its share of the light that does not pass.
+fn absorbed_in_film(own: f64, other: f64) -> f64 {
+    match own + other {
+        0.0 => 0.0,
+        density => own / density * -(-LN_10 * density).exp_m1(),
     }
 }
 
@@ -330,7 +371,8 @@ impl Spectra {
 mod tests {
     use super::*;
     use upglow::{
-        AnalyticModel, Bispectral, DyeOptions, DyeSet, Features, Mixture, ModelOnGrid, QuantumYield,
+        AnalyticModel, Bispectral, DyeOptions, DyeSet, Features, FilmModel, Mixture, ModelOnGrid,
+        QuantumYield,
     };
 
     /// Rounding only: sums of 531 numbers of at most 1.
@@ -349,6 +391,9 @@ mod tests {
                 let set = DyeSet::named("konig8").unwrap();
                 models.push(Model::Dyes(DyeModel::new(set, options).unwrap()));
             }
+            let set = DyeSet::named("konig8").unwrap();
+            let film = FilmModel::new(set, accounting, QuantumYield::Measured).unwrap();
+            models.push(Model::Film(film));
         }
         models
     }
@@ -358,6 +403,7 @@ mod tests {
         let fluorescence = match model {
             Model::Reflectance => Fluorescence::None,
             Model::Dyes(_) => Fluorescence::Dyes { first: 7, weight: 0.3, concentration: 0.9 },
+            Model::Film(_) => Fluorescence::film((5, 0.3), (2, 4.0)),
             Model::Analytic(_) => Fluorescence::Analytic {
                 emission_peak_nm: 611.3,
                 stokes_shift_nm: 47.7,

@@ -1,0 +1,121 @@
+//! Of the exact matches of a node, the one nearest to its neighbors' materials.
+
+use rayon::prelude::*;
+use upglow::{Fluorescence, Model, ModelOnGrid};
+use upglow_color::{Contract, Grid, LinearRgb};
+
+use super::Stage;
+use super::lattice::Lattice;
+use crate::cube::BuildError;
+use crate::fit::Fit;
+use crate::fitter::Fitter;
+use crate::seams::lights;
+
+/// A match may have this many times the least dose.
+const MOST_DOSE: f64 = 2.0;
+
+/// How often each node looks at its neighbors.
+const ROUNDS: usize = 3;
+
+/// How many kinds of its neighbors' materials a node tries.
+const KINDS_TRIED: usize = 3;
+
+/// How the colors of a material shift from the contract's light to others, in Lab.
+type Shifts = [[f64; 3]; 3];
+
+/// Replaces the material of each node that fluoresces by the match nearest to the materials of its
+/// neighbors, of those with at most twice the least dose.
+///
+/// Two materials are near if their colors shift alike under other lights. Nodes take turns like the
+/// fields of a chessboard, so that the neighbors of a node keep still while it chooses.
+pub(super) struct Choice<'f> {
+    fitter: &'f Fitter,
+    lattice: Lattice,
+    lights: Vec<ModelOnGrid>,
+}
+
+impl<'f> Choice<'f> {
+    pub(super) fn new(
+        fitter: &'f Fitter,
+        lattice: Lattice,
+        contract: &Contract,
+        model: &Model,
+    ) -> Self {
+        let on = |illuminant| {
+            let contract = Contract { illuminant, ..contract.clone() };
+            ModelOnGrid::new(model, &contract.on(Grid::FIT))
+        };
+        Self { fitter, lattice, lights: lights().map(on).to_vec() }
+    }
+
+    pub(super) fn choose(
+        &self,
+        mut fits: Vec<Fit>,
+        stage: &Stage<'_>,
+    ) -> Result<Vec<Fit>, BuildError> {
+        let least: Vec<f64> = fits.iter().map(|fit| fit.fluorescence.dose()).collect();
+        let mut shifts: Vec<Shifts> = fits.par_iter().map(|fit| self.shifts(fit)).collect();
+        for _ in 0..ROUNDS {
+            for parity in 0..2 {
+                let may_move = |i: &usize| {
+                    self.lattice.parity(*i) == parity
+                        && fits[*i].is_matched()
+                        && fits[*i].fluorescence != Fluorescence::None
+                };
+                let nodes: Vec<usize> = (0..fits.len()).filter(may_move).collect();
+                let chosen = stage.each(nodes.len(), |k| {
+                    self.chosen(&fits, &shifts, nodes[k], MOST_DOSE * least[nodes[k]])
+                })?;
+                for (node, (fit, shift)) in nodes.into_iter().zip(chosen) {
+                    fits[node] = fit;
+                    shifts[node] = shift;
+                }
+            }
+        }
+        Ok(fits)
+    }
+
+    /// The nearest match of one node, and its shifts.
+    fn chosen(
+        &self,
+        fits: &[Fit],
+        shifts: &[Shifts],
+        node: usize,
+        most_dose: f64,
+    ) -> (Fit, Shifts) {
+        let known = fits[node];
+        let around: Vec<usize> =
+            self.lattice.neighbors(node).filter(|&i| fits[i].is_matched()).collect();
+        let neighbors: Vec<Fit> = around.iter().map(|&i| fits[i]).collect();
+        let rgb: LinearRgb = self.lattice.rgb(node);
+        let distance = |of: &Shifts| around.iter().map(|&i| square(of, &shifts[i])).sum::<f64>();
+        let mut best = (known, shifts[node]);
+        let mut least = distance(&best.1);
+        for candidate in self.fitter.matches_near(rgb, known, &neighbors, KINDS_TRIED) {
+            if candidate.fluorescence.dose() > most_dose || !candidate.is_matched() {
+                continue;
+            }
+            let shift = self.shifts(&candidate);
+            let found = distance(&shift);
+            if found < least {
+                (best, least) = ((candidate, shift), found);
+            }
+        }
+        best
+    }
+
+    fn shifts(&self, fit: &Fit) -> Shifts {
+        let home = fit.lab;
+        let mut shifts = [[0.0; 3]; 3];
+        for (shift, light) in shifts.iter_mut().zip(&self.lights) {
+            let lab = light.colorimetry().lab_from_xyz(light.color(fit.material()));
+            *shift = [lab.l - home.l, lab.a - home.a, lab.b - home.b];
+        }
+        shifts
+    }
+}
+
+fn square(one: &Shifts, two: &Shifts) -> f64 {
+    let pairs = one.as_flattened().iter().zip(two.as_flattened());
+    pairs.map(|(a, b)| (a - b) * (a - b)).sum()
+}
