@@ -1,8 +1,9 @@
 //! A cube as source text and the files it reads.
 
+use std::f32::consts::LN_10;
 use std::fmt::Write as _;
 
-use upglow::{Accounting, AnalyticModel, Cube, Model};
+use upglow::{Accounting, AnalyticModel, Cube, FilmModel, Model};
 use upglow_color::Grid;
 use upglow_color::rounding::to_single;
 
@@ -10,7 +11,7 @@ use crate::error::ShaderError;
 use crate::language::Language;
 use crate::payload::{checksum, payload};
 use crate::template::functions;
-use crate::textures::{BINS, Texture, curves, nodes};
+use crate::textures::{BINS, Texture, curves, film_curves, nodes};
 use crate::tiff::tiff;
 use crate::translation::translate;
 
@@ -42,6 +43,12 @@ const BELOW_ONE: f32 = 1.0 - f32::EPSILON;
 /// Smallest divisor: below every area or density that wavelengths are drawn from, above what drivers
 /// flush to zero.
 const TINY: f32 = 1e-30;
+/// Below this optical density a film's absorption is a series. With a smaller one, the closed form
+/// cancels more digits than OSL has, whose exponential errs by 3e-6; with a larger one, the series
+/// needs more terms.
+const THIN: f32 = 0.5;
+/// Terms of that series: the first that is left out is 1e-8 of the sum at [`THIN`].
+const TERMS: u32 = 11;
 /// Halvings that find one bin among all.
 const HALVINGS: u32 = BINS.ilog2() + 1;
 /// The start errs by 0.02, and each step squares the error: the third is below single precision.
@@ -65,6 +72,7 @@ impl Shader {
         let nodes = nodes(cube)?;
         let curves = match cube.model() {
             Model::Dyes(dyes) => Some(curves(dyes)),
+            Model::Film(film) => Some(film_curves(film)),
             Model::Reflectance | Model::Analytic(_) => None,
         };
         let payload = payload_files(cube, language, name, &nodes, curves.as_ref());
@@ -113,7 +121,7 @@ fn heading(cube: &Cube, language: Language, payload: &[PayloadFile], checksum: u
         contract.observer.name()
     ));
     line(&format!("Reads {}; checksum {checksum:016x}.", names.join(", ")));
-    binding(language, matches!(cube.model(), Model::Dyes(_))).lines().for_each(line);
+    binding(language, cube.model().dyes().is_some()).lines().for_each(line);
     text.push('\n');
     text
 }
@@ -155,16 +163,28 @@ fn constants(cube: &Cube) -> String {
         number("BELOW_ONE", "f32", &float(BELOW_ONE));
         number("TINY", "f32", &float(TINY));
     }
+    if let Some(dyes) = cube.model().dyes() {
+        number("DYES", "i32", &dyes.curves().len().to_string());
+        number("FIRST_NM", "f32", &format!("{}.0", Grid::FINE.first_nm()));
+        number("BINS", "i32", &BINS.to_string());
+        number("HALVINGS", "i32", &HALVINGS.to_string());
+    }
     match cube.model() {
         Model::Reflectance => {}
-        Model::Dyes(dyes) => {
-            number("DYES", "i32", &dyes.curves().len().to_string());
-            number("FIRST_NM", "f32", &format!("{}.0", Grid::FINE.first_nm()));
-            number("BINS", "i32", &BINS.to_string());
-            number("HALVINGS", "i32", &HALVINGS.to_string());
+        Model::Dyes(_) => {
             for (which, name) in ["ABSORPTION", "MOMENT", "EMISSION"].into_iter().enumerate() {
                 number(name, "i32", &which.to_string());
             }
+        }
+        Model::Film(_) => {
+            for (name, level) in ["A", "B", "C", "D"].into_iter().zip(FilmModel::LEVELS) {
+                number(&format!("LEVEL_{name}"), "f32", &float(to_single(level)));
+            }
+            // After the levels, which are integrals 0, 1, 2 and 3.
+            number("EMISSION", "i32", &FilmModel::LEVELS.len().to_string());
+            number("LN_10", "f32", &float(LN_10));
+            number("THIN", "f32", &float(THIN));
+            number("TERMS", "i32", &TERMS.to_string());
         }
         Model::Analytic(bells) => {
             let [absorption, emission] = steps_nm(bells).map(float);

@@ -6,7 +6,9 @@ use crate::language::Language;
 
 const MATERIAL: &str = include_str!("templates/material.wgsl");
 const SHARE: &str = include_str!("templates/share.wgsl");
+const CURVES: &str = include_str!("templates/curves.wgsl");
 const DYES: &str = include_str!("templates/dyes.wgsl");
+const FILM: &str = include_str!("templates/film.wgsl");
 const BELLS: &str = include_str!("templates/bells.wgsl");
 const EVALUATION: &str = include_str!("templates/evaluation.wgsl");
 const SAMPLING: &str = include_str!("templates/sampling.wgsl");
@@ -15,7 +17,8 @@ const SAMPLING: &str = include_str!("templates/sampling.wgsl");
 pub(crate) fn functions(model: &Model, language: Language) -> String {
     let pieces: &[&str] = match model {
         Model::Reflectance => &[MATERIAL, EVALUATION, SAMPLING],
-        Model::Dyes(_) => &[MATERIAL, SHARE, DYES, EVALUATION, SAMPLING],
+        Model::Dyes(_) => &[MATERIAL, SHARE, CURVES, DYES, EVALUATION, SAMPLING],
+        Model::Film(_) => &[MATERIAL, SHARE, CURVES, FILM, EVALUATION, SAMPLING],
         Model::Analytic(_) => &[MATERIAL, SHARE, BELLS, EVALUATION, SAMPLING],
     };
     let mut traits = traits(model);
@@ -37,9 +40,13 @@ fn traits(model: &Model) -> Vec<&'static str> {
                 Mixing::Pooled => "pooled",
                 Mixing::Separate => "separate",
             };
-            vec!["fluorescent", "dyes", mixing, accounting(dyes.options().accounting)]
+            let accounting = accounting(dyes.options().accounting);
+            vec!["fluorescent", "concentrated", "dyes", mixing, accounting]
         }
-        Model::Analytic(bells) => vec!["fluorescent", "bells", accounting(bells.accounting())],
+        Model::Film(film) => vec!["fluorescent", "film", accounting(film.accounting())],
+        Model::Analytic(bells) => {
+            vec!["fluorescent", "concentrated", "bells", accounting(bells.accounting())]
+        }
     }
 }
 
@@ -71,12 +78,16 @@ mod tests {
         assert_eq!(kept(template, &[]), "a\nd\n");
     }
 
+    const TEMPLATES: [&str; 8] = [MATERIAL, SHARE, CURVES, DYES, FILM, BELLS, EVALUATION, SAMPLING];
+
     #[test]
     fn every_condition_is_closed_and_a_trait_of_some_shader() {
         let known = [
             "passive",
             "fluorescent",
+            "concentrated",
             "dyes",
+            "film",
             "bells",
             "pooled",
             "separate",
@@ -84,7 +95,7 @@ mod tests {
             "photon",
             "osl",
         ];
-        for template in [MATERIAL, SHARE, DYES, BELLS, EVALUATION, SAMPLING] {
+        for template in TEMPLATES {
             let mut open = false;
             for line in template.lines().filter(|line| line.trim_start().starts_with("//@")) {
                 let opens = line.strip_prefix("//@if ").is_some_and(|name| known.contains(&name));
@@ -98,7 +109,7 @@ mod tests {
     #[test]
     fn the_plainest_model_has_no_word_of_fluorescence() {
         let text = functions(&Model::Reflectance, Language::Wgsl);
-        for word in ["dye", "bell", "concentration", "upglow_share", "//@"] {
+        for word in ["dye", "bell", "film", "concentration", "upglow_share", "//@"] {
             assert!(!text.contains(word), "{word}");
         }
     }
@@ -117,7 +128,7 @@ mod tests {
     #[test]
     fn no_name_is_a_keyword_of_some_language() {
         let reserved: Vec<&str> = RESERVED.split_whitespace().collect();
-        for template in [MATERIAL, SHARE, DYES, BELLS, EVALUATION, SAMPLING] {
+        for template in TEMPLATES {
             for line in template.lines() {
                 let code = line.split("//").next().unwrap_or_default();
                 for word in code.split(|c: char| !c.is_ascii_alphanumeric() && c != '_') {

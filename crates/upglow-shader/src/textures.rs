@@ -1,6 +1,6 @@
 //! A cube's numbers as two textures of four floats per texel.
 
-use upglow::{Cube, DyeModel};
+use upglow::{Cube, DyeModel, FilmModel};
 use upglow_color::rounding::to_single;
 use upglow_color::{Grid, Spectrum};
 
@@ -52,21 +52,47 @@ pub(crate) fn nodes(cube: &Cube) -> Result<Texture, ShaderError> {
 /// emission. The last row is each dye's quantum yield, mean emission (nm), ∫ returned dλ by itself
 /// (nm) and ∫ ê dλ.
 pub(crate) fn curves(dyes: &DyeModel) -> Texture {
-    let columns: Vec<[Vec<[f64; 4]>; 2]> =
-        (0..dyes.curves().len()).map(|dye| dye_columns(dyes, dye)).collect();
-    let texels = (0..CURVE_ROWS).flat_map(|row| {
-        columns.iter().flat_map(move |[values, integrals]| [values[row], integrals[row]])
-    });
-    Texture { width: 2 * columns.len(), texels: texels.map(single).collect() }
+    of_columns((0..dyes.curves().len()).flat_map(|dye| dye_columns(dyes, dye)))
 }
 
-fn dye_columns(dyes: &DyeModel, dye: usize) -> [Vec<[f64; 4]>; 2] {
+/// The curves of a film: those of its dyes as in [`curves`], and after them texel
+/// (2·(dyes + dye) + part, sample).
+///
+/// Part 0 is what the dye returns at each of [`FilmModel::LEVELS`], part 1 the integrals of that up to
+/// the sample. In the last row they are zeros.
+pub(crate) fn film_curves(film: &FilmModel) -> Texture {
+    let dyes = film.dyes();
+    let numbers = || 0..dyes.curves().len();
+    let levels = numbers().flat_map(|dye| level_columns(film, dye));
+    of_columns(numbers().flat_map(|dye| dye_columns(dyes, dye)).chain(levels))
+}
+
+/// A column of [`CURVE_ROWS`] texels.
+type Column = Vec<[f64; 4]>;
+
+fn of_columns(columns: impl Iterator<Item = Column>) -> Texture {
+    let columns: Vec<Column> = columns.collect();
+    let texels = (0..CURVE_ROWS).flat_map(|row| columns.iter().map(move |column| column[row]));
+    Texture { width: columns.len(), texels: texels.map(single).collect() }
+}
+
+fn level_columns(film: &FilmModel, dye: usize) -> [Column; 2] {
+    let quantum_yield = film.dyes().curves()[dye].quantum_yield;
+    let returned = film.proposed(dye).map(|level| level.iter().map(|a| quantum_yield * a));
+    let returned = returned.map(Iterator::collect::<Vec<f64>>);
+    let integrals = returned.each_ref().map(|level| integral(level));
+    [returned, integrals].map(|levels| {
+        let row = |i: usize| levels.each_ref().map(|level| level.get(i).copied().unwrap_or(0.0));
+        (0..CURVE_ROWS).map(row).collect()
+    })
+}
+
+fn dye_columns(dyes: &DyeModel, dye: usize) -> [Column; 2] {
     let curves = &dyes.curves()[dye];
     let [a, e] = [curves.absorption.values(), curves.emission.values()];
     let rise = |of: &[f64], i: usize| of.get(i + 1).map_or(0.0, |next| next - of[i]);
-    let mut values: Vec<[f64; 4]> =
-        (0..=BINS).map(|i| [a[i], rise(a, i), e[i], rise(e, i)]).collect();
-    let [area, emitted] = [integral(&curves.absorption), integral(&curves.emission)];
+    let mut values: Column = (0..=BINS).map(|i| [a[i], rise(a, i), e[i], rise(e, i)]).collect();
+    let [area, emitted] = [integral(a), integral(e)];
     let moment = moment_integral(&curves.absorption);
     let numbers = [
         curves.quantum_yield,
@@ -75,15 +101,14 @@ fn dye_columns(dyes: &DyeModel, dye: usize) -> [Vec<[f64; 4]>; 2] {
         emitted[BINS],
     ];
     values.push(numbers);
-    let mut integrals: Vec<[f64; 4]> =
-        (0..=BINS).map(|i| [area[i], moment[i], emitted[i], 0.0]).collect();
+    let mut integrals: Column = (0..=BINS).map(|i| [area[i], moment[i], emitted[i], 0.0]).collect();
     integrals.push([0.0; 4]);
     [values, integrals]
 }
 
 /// ∫ curve dλ up to each sample: trapezoids 1 nm wide.
-fn integral(curve: &Spectrum) -> Vec<f64> {
-    running_sum(curve.values().windows(2).map(|pair| 0.5 * (pair[0] + pair[1])))
+fn integral(curve: &[f64]) -> Vec<f64> {
+    running_sum(curve.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])))
 }
 
 /// ∫ curve·λ dλ up to each sample, for the straight lines between samples 1 nm apart.
@@ -110,7 +135,7 @@ fn single(texel: [f64; 4]) -> [f32; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use upglow::{DyeOptions, DyeSet};
+    use upglow::{Accounting, DyeOptions, DyeSet, QuantumYield};
 
     #[test]
     fn integrals_of_a_curve_are_those_of_its_polygon() {
@@ -118,7 +143,7 @@ mod tests {
         for curves in dyes.curves() {
             let a = &curves.absorption;
             // Rounding of sums of 530 terms.
-            assert!((integral(a)[BINS] - a.area(300.0, 830.0)).abs() < 1e-10);
+            assert!((integral(a.values())[BINS] - a.area(300.0, 830.0)).abs() < 1e-10);
             let n = 530_000;
             let step = 530.0 / f64::from(n);
             let at = |i| 300.0 + step * (f64::from(i) + 0.5);
@@ -141,5 +166,33 @@ mod tests {
         assert!((mean_nm - dye.mean_emission_nm).abs() < 4e-5);
         assert!((returned_nm - dye.absorption.area(300.0, 830.0)).abs() < 4e-5);
         assert!((0.99..=1.0).contains(&emitted));
+    }
+
+    #[test]
+    fn the_levels_of_a_film_follow_the_columns_of_its_dyes() {
+        let set = || DyeSet::named("konig8").unwrap();
+        let film = FilmModel::new(set(), Accounting::Energy, QuantumYield::Fixed(0.5)).unwrap();
+        let texture = film_curves(&film);
+        assert_eq!([texture.width, texture.height()], [32, 532]);
+        let texel = |column: usize, row: usize| texture.texels[row * 32 + column].map(f64::from);
+        let plain = curves(film.dyes());
+        for row in 0..532 {
+            assert_eq!(texture.texels[row * 32..][..16], plain.texels[row * 16..][..16]);
+        }
+        let absorption = film.dyes().curves()[3].absorption.values();
+        let column = 2 * (8 + 3);
+        let mut integrals = [0.0; 4];
+        for row in 0..531 {
+            for (k, level) in FilmModel::LEVELS.into_iter().enumerate() {
+                let absorbed = |row: usize| 1.0 - 10_f64.powf(-level * absorption[row]);
+                // Single precision of numbers below 1.
+                assert!((texel(column, row)[k] - 0.5 * absorbed(row)).abs() < 6e-8);
+                integrals[k] +=
+                    if row == 0 { 0.0 } else { 0.25 * (absorbed(row - 1) + absorbed(row)) };
+                // Single precision of numbers below 512.
+                assert!((texel(column + 1, row)[k] - integrals[k]).abs() < 4e-5);
+            }
+        }
+        assert_eq!([texel(column, 531), texel(column + 1, 531)], [[0.0; 4]; 2]);
     }
 }

@@ -8,7 +8,8 @@ use std::process::Command;
 
 use upglow::{
     Accounting, AnalyticModel, Bispectral, Cube, Draw, DyeModel, DyeOptions, DyeSet, Edge,
-    FitRecord, Fluorescence, Interpolation, Mixing, Mixture, Model, Node, QuantumYield, Sample,
+    FilmModel, FitRecord, Fluorescence, Interpolation, Mixing, Mixture, Model, Node, QuantumYield,
+    Sample,
 };
 use upglow_color::{Contract, LinearRgb};
 use upglow_shader::{Language, Shader};
@@ -39,6 +40,12 @@ impl Random {
         low + (high - low) * f64::from(self.unit())
     }
 
+    fn dye(&mut self, dyes: &DyeModel) -> usize {
+        let n = dyes.curves().len();
+        let place = self.between(0.0, n as f64);
+        (0..n).rev().find(|&i| i as f64 <= place).unwrap_or(0)
+    }
+
     /// A node that is valid under `model`; one in four does not fluoresce.
     fn node(&mut self, model: &Model) -> Node {
         let reflectance = Edge {
@@ -51,10 +58,16 @@ impl Random {
             _ if concentration == 0.0 => Fluorescence::None,
             Model::Reflectance => Fluorescence::None,
             Model::Dyes(dyes) => {
-                let n = dyes.curves().len();
-                let place = self.between(0.0, n as f64);
-                let first = (0..n).rev().find(|&i| i as f64 <= place).unwrap_or(0);
+                let first = self.dye(dyes);
                 Fluorescence::Dyes { first, weight: self.between(0.0, 1.0), concentration }
+            }
+            Model::Film(film) => {
+                // Thin ones too, whose formula is a series.
+                let mut dye = || {
+                    let density = 6.0 * self.between(0.0, 1.0).powi(3);
+                    (self.dye(film.dyes()), density)
+                };
+                Fluorescence::film(dye(), dye())
             }
             Model::Analytic(_) => Fluorescence::Analytic {
                 emission_peak_nm: self.between(400.0, 710.0),
@@ -72,6 +85,8 @@ fn models() -> Vec<Model> {
     let mut models =
         vec![Model::Reflectance, Model::Analytic(AnalyticModel::default()), Model::Analytic(bells)];
     for accounting in [Accounting::Energy, Accounting::Photon] {
+        let set = DyeSet::named("konig8").unwrap();
+        models.push(Model::Film(FilmModel::new(set, accounting, QuantumYield::Measured).unwrap()));
         for mixing in [Mixing::Pooled, Mixing::Separate] {
             for optical_density in [None, Some(4.0)] {
                 let quantum_yield = QuantumYield::Measured;
@@ -426,12 +441,14 @@ impl Errors {
             "outgoing density",
         );
         let u = query.u.map(f64::from);
-        self.flips += usize::from(!answer.came.agrees(mixture.sample_incident(out_nm, u), |nm| {
-            mixture.incident_pdf_per_nm(nm, out_nm)
-        }));
-        self.flips += usize::from(!answer.left.agrees(mixture.sample_outgoing(in_nm, u), |nm| {
-            mixture.outgoing_pdf_per_nm(in_nm, nm)
-        }));
+        let came = answer.came.agrees(mixture.sample_incident(out_nm, u), leaving, |nm| {
+            [mixture.incident_pdf_per_nm(nm, out_nm), mixture.reradiation_per_nm(nm, out_nm)]
+        });
+        let arriving = mixture.sample_outgoing(in_nm, [0.0; 2]).map_or(0.0, |s| s.throughput);
+        let left = answer.left.agrees(mixture.sample_outgoing(in_nm, u), arriving, |nm| {
+            [mixture.outgoing_pdf_per_nm(in_nm, nm), mixture.reradiation_per_nm(in_nm, nm)]
+        });
+        self.flips += usize::from(!came) + usize::from(!left);
     }
 }
 
@@ -441,25 +458,36 @@ fn throughput_leaving(mixture: &Mixture<'_>, out_nm: f64) -> f64 {
 }
 
 impl Drawn {
-    /// Whether the library drew the same, with checks of what must hold in any case.
-    fn agrees(&self, expected: Option<Sample<f64>>, pdf_at: impl Fn(f64) -> f64) -> bool {
+    /// Whether the library drew the same, with checks of what must hold in any case. `whole` is the
+    /// library's throughput of elastic draws; `at` are its density and re-radiation at a wavelength
+    /// drawn, 1/nm.
+    fn agrees(
+        &self,
+        expected: Option<Sample<f64>>,
+        whole: f64,
+        at: impl Fn(f64) -> [f64; 2],
+    ) -> bool {
         // Areas of curves in single precision, through four roundings.
         const AREA: f64 = 2e-6;
         const NM: f64 = 2e-3;
-        let Some(Sample { nm, throughput, draw }) = expected else {
+        let Some(Sample { nm, draw, .. }) = expected else {
             assert!(self.throughput < SHARE, "{self:?}");
             return true;
         };
-        assert!((self.throughput - throughput).abs() < 2.0 * SHARE, "{self:?} {expected:?}");
-        if !self.elastic {
-            let error = (self.pdf - pdf_at(self.nm)).abs() * throughput.min(1.0);
+        if self.elastic {
+            assert!((self.throughput - whole).abs() < 2.0 * SHARE, "{self:?} {whole}");
+        } else {
+            let [pdf, carried] = at(self.nm);
+            let error = (self.pdf - pdf).abs() * whole.min(1.0);
             assert!(error < PER_NM, "{self:?} {expected:?} {error}");
+            let error = (self.throughput - carried / pdf).abs();
+            assert!(error < 2.0 * SHARE, "{self:?} {expected:?} {error}");
         }
         match draw {
             Draw::Elastic { probability } => {
                 self.elastic
                     && self.nm == nm
-                    && (self.pdf - probability).abs() * throughput.min(1.0) < SHARE
+                    && (self.pdf - probability).abs() * whole.min(1.0) < SHARE
             }
             Draw::Fluorescent { per_nm } => {
                 let distance = (self.nm - nm).abs();

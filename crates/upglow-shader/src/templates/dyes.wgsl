@@ -1,31 +1,3 @@
-// A dye at one wavelength.
-struct UpglowCurves {
-    absorption: f32, // share of incident light at concentration 1, 0 to 1
-    emission: f32, // density of unit area, 1/nm
-}
-
-// The curves of a dye: straight lines between samples, zero beyond the last.
-fn upglow_dye_curves(dye: i32, nm: f32) -> UpglowCurves {
-    var curves: UpglowCurves;
-    curves.absorption = 0.0;
-    curves.emission = 0.0;
-    let place: f32 = upglow_within(nm, 0.0, UPGLOW_FARTHEST_NM) - UPGLOW_FIRST_NM;
-    if (place >= 0.0 && place <= f32(UPGLOW_BINS)) {
-        let bin: i32 = min(i32(place), UPGLOW_BINS - 1);
-        let t: f32 = place - f32(bin);
-        let texel: vec4f = upglow_curve(2 * dye, bin);
-        curves.absorption = texel.x + t * texel.y;
-        curves.emission = texel.z + t * texel.w;
-    }
-    return curves;
-}
-
-// Quantum yield, mean emission (nm), what it returns by itself of light that is 1 at every
-// wavelength (nm), and the area of its emission.
-fn upglow_dye_numbers(dye: i32) -> vec4f {
-    return upglow_curve(2 * dye, UPGLOW_BINS + 1);
-}
-
 fn upglow_next(dye: i32) -> i32 {
     if (dye + 1 < UPGLOW_DYES) {
         return dye + 1;
@@ -43,58 +15,12 @@ fn upglow_absorbed(c: UpglowCorner, nm: f32) -> f32 {
     return c.concentration * mix(first.absorption, second.absorption, c.second);
 }
 
-// Integrals of a dye's curves up to a sample: of the absorption, of the absorption times the
-// wavelength, of the emission.
-fn upglow_integral(dye: i32, sample_number: i32, which: i32) -> f32 {
-    let texel: vec4f = upglow_curve(2 * dye + 1, sample_number);
-    if (which == UPGLOW_ABSORPTION) {
-        return texel.x;
-    }
-    if (which == UPGLOW_MOMENT) {
-        return texel.y;
-    }
-    return texel.z;
-}
-
-// The bin of 1 nm in which an integral reaches a value.
-fn upglow_bin(dye: i32, which: i32, value: f32) -> i32 {
-    var low: i32 = 0;
-    var high: i32 = UPGLOW_BINS;
-    for (var halving: i32 = 0; halving < UPGLOW_HALVINGS; halving += 1) {
-        let middle: i32 = (low + high) / 2;
-        if (upglow_integral(dye, middle, which) <= value) {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    return min(low, UPGLOW_BINS - 1);
-}
-
-// The t, 0 to 1, at which a density that begins with start and grows by rise has this area.
-fn upglow_trapezoid(start: f32, rise: f32, area: f32) -> f32 {
-    let root: f32 = sqrt(max(start * start + 2.0 * area * rise, 0.0));
-    if (start + root > 0.0) {
-        return upglow_within(2.0 * area / (start + root), 0.0, 1.0);
-    }
-    return 0.0;
-}
-
 // The wavelength below which the integral of the absorption is this.
 fn upglow_absorption_quantile(dye: i32, area: f32) -> f32 {
     let bin: i32 = upglow_bin(dye, UPGLOW_ABSORPTION, area);
     let texel: vec4f = upglow_curve(2 * dye, bin);
     let rest: f32 = area - upglow_integral(dye, bin, UPGLOW_ABSORPTION);
     return UPGLOW_FIRST_NM + f32(bin) + upglow_trapezoid(texel.x, texel.y, rest);
-}
-
-// A wavelength with the density of a dye's emission, from u in 0 to 1.
-fn upglow_draw_emitted(dye: i32, u: f32) -> f32 {
-    let area: f32 = u * upglow_integral(dye, UPGLOW_BINS, UPGLOW_EMISSION);
-    let bin: i32 = upglow_bin(dye, UPGLOW_EMISSION, area);
-    let texel: vec4f = upglow_curve(2 * dye, bin);
-    let rest: f32 = area - upglow_integral(dye, bin, UPGLOW_EMISSION);
-    return UPGLOW_FIRST_NM + f32(bin) + upglow_trapezoid(texel.z, texel.w, rest);
 }
 //@if energy
 

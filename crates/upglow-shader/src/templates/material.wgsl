@@ -5,13 +5,19 @@ struct UpglowCorner {
     level: f32, // the parabola there
     rise: f32, // the parabola's coefficient of the distance from there, 1/nm
     bend: f32, // and of its square, 1/nm²
-//@if fluorescent
+//@if concentrated
     concentration: f32, // 0 where nothing fluoresces
     returned_nm: f32, // what fluorescence gives back of light that is 1 at every wavelength
 //@end
 //@if dyes
     dye: i32, // number of the first of its two dyes
     second: f32, // share of the second, the next in the ring
+//@end
+//@if film
+    density: f32, // optical density of its first dye, 0 where nothing fluoresces
+    second_density: f32, // of its second dye
+    dye: i32, // number of the first dye
+    second_dye: i32, // of the second
 //@end
 //@if bells
     absorption_nm: f32, // the absorption's peak
@@ -51,12 +57,20 @@ fn upglow_corner(weight: f32, red: i32, row: i32) -> UpglowCorner {
     corner.bend = parabola.w;
 //@if fluorescent
     let numbers: vec4f = upglow_node(2 * red + 1, row);
+//@end
+//@if concentrated
     corner.concentration = numbers.y;
     corner.returned_nm = numbers.z;
 //@end
 //@if dyes
     corner.dye = i32(numbers.w);
     corner.second = numbers.x;
+//@end
+//@if film
+    corner.density = numbers.y;
+    corner.second_density = numbers.x;
+    corner.dye = i32(numbers.w);
+    corner.second_dye = i32(numbers.z);
 //@end
 //@if bells
     corner.absorption_nm = numbers.w;

@@ -1,7 +1,7 @@
 // A wavelength drawn from a material.
 struct UpglowSample {
     nm: f32, // the wavelength drawn
-    throughput: f32, // factor of the path's throughput, the same for every draw; 0 for nothing
+    throughput: f32, // factor of the path's throughput; 0 for nothing
     pdf: f32, // 1/nm; of an elastic draw its probability
     elastic: bool, // whether the wavelength was kept
 }
@@ -79,7 +79,7 @@ fn upglow_shares(reflected: f32, a: f32, b: f32, c: f32, d: f32) -> UpglowShares
     return shares;
 }
 
-// What leaves at out_nm of light that is 1 at every wavelength.
+// What leaves at out_nm of light that is 1 at every wavelength; of a film, what draws follow instead.
 fn upglow_shares_leaving(m: UpglowMaterial, out_nm: f32) -> UpglowShares {
     return upglow_shares(
         upglow_reflectance(m, out_nm), upglow_leaving(m.a, out_nm), upglow_leaving(m.b, out_nm),
@@ -137,6 +137,24 @@ fn upglow_shifted_sample(nm: f32, reradiation: f32, throughput: f32) -> UpglowSa
     return drawn;
 }
 
+// What upglow_sample_incident draws in_nm in proportion to, 1/nm.
+//@end
+//@if concentrated
+fn upglow_drawn(m: UpglowMaterial, in_nm: f32, out_nm: f32) -> f32 {
+    return upglow_reradiation(m, in_nm, out_nm);
+}
+//@end
+//@if film
+fn upglow_drawn(m: UpglowMaterial, in_nm: f32, out_nm: f32) -> f32 {
+    let a: f32 = upglow_proposed_moved(m.a, in_nm, out_nm);
+    let b: f32 = upglow_proposed_moved(m.b, in_nm, out_nm);
+    let c: f32 = upglow_proposed_moved(m.c, in_nm, out_nm);
+    let d: f32 = upglow_proposed_moved(m.d, in_nm, out_nm);
+    return a + b + c + d;
+}
+//@end
+//@if fluorescent
+
 // Draws the wavelength of incident light, given that of light that leaves: the camera's way.
 // choice and u are independent numbers in 0 to 1: the first chooses between reflection and
 // fluorescence, the second draws the wavelength.
@@ -150,13 +168,23 @@ fn upglow_sample_incident(m: UpglowMaterial, out_nm: f32, choice: f32, u: f32) -
     let chosen: UpglowChoice = upglow_choose(m, shares, rest);
     let bound_u: f32 = upglow_within(u, 0.0, UPGLOW_BELOW_ONE);
     let in_nm: f32 = upglow_draw_incident(chosen.corner, out_nm, chosen.rest, bound_u);
-    return upglow_shifted_sample(in_nm, upglow_reradiation(m, in_nm, out_nm), shares.total);
+    let density: f32 = upglow_drawn(m, in_nm, out_nm);
+//@end
+//@if concentrated
+    return upglow_shifted_sample(in_nm, density, shares.total);
+//@end
+//@if film
+    var drawn: UpglowSample = upglow_shifted_sample(in_nm, density, shares.total);
+    drawn.throughput *= upglow_ratio(upglow_reradiation(m, in_nm, out_nm), density);
+    return drawn;
+//@end
+//@if fluorescent
 }
 
 // The density with which upglow_sample_incident draws in_nm by fluorescence, 1/nm.
 fn upglow_incident_pdf(m: UpglowMaterial, in_nm: f32, out_nm: f32) -> f32 {
     let shares: UpglowShares = upglow_shares_leaving(m, out_nm);
-    return upglow_ratio(upglow_reradiation(m, in_nm, out_nm), shares.total);
+    return upglow_ratio(upglow_drawn(m, in_nm, out_nm), shares.total);
 }
 
 // The probability that upglow_sample_incident keeps the wavelength.
