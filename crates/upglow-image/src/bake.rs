@@ -12,7 +12,7 @@ mod spectral;
 use std::path::Path;
 
 use rayon::prelude::*;
-use upglow::{Cube, LookupError, Model};
+use upglow::{Cube, LookupError};
 use upglow_color::{Grid, Illuminant, LinearRgb};
 use upglow_fit::{FitOptionsError, StandingTable, Stopped, Watch};
 
@@ -96,7 +96,7 @@ pub enum BakeError {
     #[error(transparent)]
     Options(#[from] FitOptionsError),
     /// The cube's model has no compact form.
-    #[error("a cube with the model {found}, expected dyes for the compact form")]
+    #[error("a cube with the model {found}, expected dyes or film for the compact form")]
     NoDyes {
         /// Name of the model.
         found: &'static str,
@@ -155,20 +155,13 @@ impl<'c> Baker<'c> {
     /// [`BakeError`] if the cube does not support the form.
     pub fn new(cube: &'c Cube, form: Form, options: BakeOptions) -> Result<Self, BakeError> {
         let is_polished = form == Form::Material;
-        let maker: Box<dyn Maker + 'c> = match (form, cube.model()) {
-            (Form::Material | Form::InterpolatedMaterial, _) => {
+        let maker: Box<dyn Maker + 'c> = match form {
+            Form::Material | Form::InterpolatedMaterial => {
                 Box::new(MaterialMaker::new(cube, is_polished, options.sample)?)
             }
-            (Form::Spectral { grid, compact: false }, _) => {
-                Box::new(SpectralMaker::new(cube, grid))
-            }
-            (Form::Spectral { grid, .. }, Model::Dyes(dyes)) => {
-                Box::new(CompactMaker::new(cube, dyes, grid)?)
-            }
-            (Form::Spectral { .. }, model) => {
-                return Err(BakeError::NoDyes { found: model.name() });
-            }
-            (Form::Radiance { light }, _) => Box::new(RadianceMaker::new(cube, light)),
+            Form::Spectral { grid, compact: false } => Box::new(SpectralMaker::new(cube, grid)),
+            Form::Spectral { grid, compact: true } => Box::new(CompactMaker::new(cube, grid)?),
+            Form::Radiance { light } => Box::new(RadianceMaker::new(cube, light)),
         };
         let channels = maker.channels();
         Ok(Self { cube, options, maker, channels })

@@ -354,11 +354,12 @@ mod tests {
     #[test]
     fn a_cube_with_the_picture_as_nodes_matches_it_within_the_stored_difference() {
         use upglow::{DyeModel, DyeOptions, DyeSet, Model};
-        use upglow_fit::{FitOptions, Unwatched, build_cube};
+        use upglow_fit::{Preset, Unwatched, build_cube};
         let model = DyeModel::new(DyeSet::named("konig8").unwrap(), DyeOptions::default()).unwrap();
         let contract = Contract::default();
         let model = Model::Dyes(model);
-        let cube = build_cube(&contract, &model, FitOptions::default(), 3, &Unwatched).unwrap();
+        let cube =
+            build_cube(&contract, &model, Preset::Konig2020.options(), 3, &Unwatched).unwrap();
         let limits = Limits::new(contract.clone(), Some(&cube));
         let nodes = cube.nodes().len();
         let rgb: Vec<[f32; 3]> =

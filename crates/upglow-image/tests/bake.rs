@@ -8,12 +8,13 @@ use std::sync::OnceLock;
 
 use tempfile::TempDir;
 use upglow::{
-    Cube, DyeModel, DyeOptions, DyeSet, Fluorescence, Material, Mixture, Model, ModelOnGrid, Node,
+    Accounting, Cube, DyeModel, DyeOptions, DyeSet, FilmModel, Fluorescence, Interpolation,
+    Material, Mixture, Model, ModelOnGrid, Node, QuantumYield,
 };
 use upglow_color::{
     Colorimetry, Contract, Grid, Illuminant, LinearRgb, RgbSpace, Xyz, ciede2000, lab_from_xyz,
 };
-use upglow_fit::{CubeSummary, FitOptions, Polisher, Unwatched, build_cube};
+use upglow_fit::{CubeSummary, Polisher, Preset, Unwatched, build_cube};
 use upglow_image::{
     Assumed, BakeError, BakeOptions, Baked, Baker, Encoding, ExamplePicture, ExrDescription,
     ExrReader, ExrWriter, Form, Lint, MaterialPicture, Repair, Sample, SpectralPicture,
@@ -40,8 +41,16 @@ fn dyes(set: &str) -> Model {
 }
 
 fn built(set: &str, resolution: usize) -> Cube {
-    let options = FitOptions::default();
+    let options = Preset::Konig2020.options();
     build_cube(&Contract::default(), &dyes(set), options, resolution, &Unwatched).unwrap()
+}
+
+/// A film of the dyes of a set, with photons conserved.
+fn film(set: &str, resolution: usize) -> Cube {
+    let set = DyeSet::named(set).unwrap();
+    let film = FilmModel::new(set, Accounting::Photon, QuantumYield::Measured).unwrap();
+    let (model, options) = (Model::Film(film), Preset::Konig2020.options());
+    build_cube(&Contract::default(), &model, options, resolution, &Unwatched).unwrap()
 }
 
 /// Ten nodes per side, in ACEScg under D65.
@@ -111,9 +120,20 @@ impl Desk {
 
     /// Bakes colors with [`cube`] and returns the path of the file.
     fn baked(&self, form: Form, sample: Sample, width: usize, rgb: &[[f32; 3]]) -> PathBuf {
+        self.baked_with(cube(), form, sample, width, rgb)
+    }
+
+    fn baked_with(
+        &self,
+        cube: &Cube,
+        form: Form,
+        sample: Sample,
+        width: usize,
+        rgb: &[[f32; 3]],
+    ) -> PathBuf {
         let input = self.picture("in.exr", width, rgb, None);
         let output = self.path("out.exr");
-        bake(cube(), form, options(sample), &input, &output).unwrap();
+        bake(cube, form, options(sample), &input, &output).unwrap();
         output
     }
 }
@@ -334,30 +354,96 @@ fn compact_and_full_files_have_the_same_colors() {
     assert!(fluorescent > 5, "only {fluorescent} fluorescent texels");
 }
 
+/// The shares of a texel of the bands of [`tens`] against a matrix, `[outgoing][incident]`.
+fn assert_matrix(texel: &SpectralTexel, matrix: &[Vec<f64>], tolerance: f64) {
+    let at = |nm: f64| tens().wavelengths_nm().position(|band| band == nm).unwrap();
+    assert_eq!((texel.reflectance.len(), texel.reradiation.len()), (41, 820));
+    for &(nm, share) in &texel.reflectance {
+        let miss = (matrix[at(nm)][at(nm)] - f64::from(share)).abs();
+        assert!(miss < tolerance, "{miss} {nm} {share}");
+    }
+    for &(in_nm, out_nm, share) in &texel.reradiation {
+        let miss = (matrix[at(out_nm)][at(in_nm)] - f64::from(share)).abs();
+        assert!(miss < tolerance, "{miss} {in_nm} {out_nm} {share}");
+    }
+}
+
 #[test]
 fn a_compact_file_expands_to_the_matrix_of_the_polished_material() {
     // Attributes print single precision; a share is at most 1.
     const ROUNDING: f64 = 1e-6;
     let (desk, rgb) = (Desk::new(), random_colors(40));
-    let read = texels(&desk.baked(spectral(tens(), true), Sample::Float, 8, &rgb));
-    let mut nodes = vec![Node::default(); rgb.len()];
-    Polisher::new(cube()).unwrap().polish(&rgb, &mut nodes).unwrap();
-    let nm: Vec<f64> = tens().wavelengths_nm().collect();
-    for (texel, node) in read.iter().zip(nodes) {
-        let mixture = Mixture::of(cube().model(), node.material(cube().model()));
-        let matrix = mixture.reradiation_matrix(tens());
-        for (i, &(at, share)) in texel.reflectance.iter().enumerate() {
-            assert_eq!(at, nm[i]);
-            assert!((matrix[i][i] - f64::from(share)).abs() < ROUNDING);
-        }
-        let pairs = (0..nm.len()).flat_map(|i| (i + 1..nm.len()).map(move |o| (i, o)));
-        assert_eq!(texel.reradiation.len(), 820);
-        for (&(in_nm, out_nm, share), (i, o)) in texel.reradiation.iter().zip(pairs) {
-            assert_eq!((in_nm, out_nm), (nm[i], nm[o]));
-            let miss = (matrix[o][i] - f64::from(share)).abs();
-            assert!(miss < ROUNDING, "{miss} {in_nm} {out_nm} {share}");
+    for cube in [cube(), &film("konig8", 6)] {
+        let path = desk.baked_with(cube, spectral(tens(), true), Sample::Float, 8, &rgb);
+        assert_eq!(Lint::of_file(&path).unwrap().findings, []);
+        let mut nodes = vec![Node::default(); rgb.len()];
+        Polisher::new(cube).unwrap().polish(&rgb, &mut nodes).unwrap();
+        for (texel, node) in texels(&path).iter().zip(nodes) {
+            let mixture = Mixture::of(cube.model(), node.material(cube.model()));
+            assert_matrix(texel, &mixture.reradiation_matrix(tens()), ROUNDING);
         }
     }
+}
+
+#[test]
+fn a_full_file_of_films_has_the_matrix_of_the_blend() {
+    // Single precision of shares of at most 1.
+    const ROUNDING: f64 = 1e-7;
+    let (desk, rgb, cube) = (Desk::new(), random_colors(24), film("konig8", 6));
+    let path = desk.baked_with(&cube, spectral(tens(), false), Sample::Float, 8, &rgb);
+    for (texel, rgb) in texels(&path).iter().zip(&rgb) {
+        let color = LinearRgb(rgb.map(f64::from));
+        let mixture = cube.lookup(color, Interpolation::Blend).unwrap();
+        assert_matrix(texel, &mixture.reradiation_matrix(tens()), ROUNDING);
+    }
+}
+
+#[test]
+fn films_are_baked_as_the_materials_of_the_polisher_and_read_back() {
+    // Half precision of densities up to 6 and of what they do to the color.
+    const HALF_DE2000: f64 = 0.3;
+    let (desk, rgb, cube) = (Desk::new(), random_colors(300), film("konig8", 6));
+    let polisher = Polisher::new(&cube).unwrap();
+    let sums = ModelOnGrid::new(cube.model(), colorimetry());
+    for form in [POLISHED, Form::InterpolatedMaterial] {
+        let mut nodes = vec![Node::default(); rgb.len()];
+        match form {
+            POLISHED => polisher.polish(&rgb, &mut nodes).unwrap(),
+            _ => polisher.interpolate(&rgb, &mut nodes).unwrap(),
+        };
+        let read = |sample| materials(&desk.baked_with(&cube, form.clone(), sample, 1, &rgb));
+        let [half, float] = [Sample::Half, Sample::Float].map(read);
+        let mut pairs = 0;
+        for ((node, half), float) in nodes.iter().zip(&half).zip(&float) {
+            assert_eq!(node.material(cube.model()).fluorescence, float.fluorescence);
+            let found = difference(sums.color(*half), sums.color(*float));
+            assert!(found <= HALF_DE2000, "{found} {half:?} {float:?}");
+            pairs += usize::from(matches!(
+                float.fluorescence,
+                Fluorescence::Film { densities: [_, second], .. } if second > 0.0
+            ));
+        }
+        assert!(pairs > 30, "only {pairs} films of two dyes");
+    }
+}
+
+#[test]
+fn a_film_of_fourteen_dyes_has_no_compact_form() {
+    let cube = film("wide14", 2);
+    let refused = Baker::new(&cube, spectral(tens(), true), options(Sample::Half)).unwrap_err();
+    assert_eq!(
+        refused.to_string(),
+        "14 dyes, expected 1 to 12 with a map each, or the spectral form that is not compact"
+    );
+    let passive = Model::Reflectance;
+    let options = Preset::Konig2020.options();
+    let cube = build_cube(&Contract::default(), &passive, options, 2, &Unwatched).unwrap();
+    let form = spectral(tens(), true);
+    let refused = Baker::new(&cube, form, self::options(Sample::Half)).unwrap_err();
+    assert_eq!(
+        refused.to_string(),
+        "a cube with the model reflectance, expected dyes or film for the compact form"
+    );
 }
 
 #[test]
@@ -371,13 +457,8 @@ fn a_ring_of_fourteen_dyes_expands_to_the_matrix_of_the_blend() {
     bake(&cube, spectral(tens(), true), options(Sample::Half), &input, &output).unwrap();
     for (texel, rgb) in texels(&output).iter().zip(&rgb) {
         let color = LinearRgb(rgb.map(f64::from));
-        let matrix = cube.lookup(color, upglow::Interpolation::Blend).unwrap();
-        let matrix = matrix.reradiation_matrix(tens());
-        let at = |nm: f64| tens().wavelengths_nm().position(|band| band == nm).unwrap();
-        for &(in_nm, out_nm, share) in &texel.reradiation {
-            let miss = (matrix[at(out_nm)][at(in_nm)] - f64::from(share)).abs();
-            assert!(miss < ROUNDING, "{miss} {in_nm} {out_nm} {share} {rgb:?}");
-        }
+        let matrix = cube.lookup(color, Interpolation::Blend).unwrap();
+        assert_matrix(texel, &matrix.reradiation_matrix(tens()), ROUNDING);
     }
 }
 
@@ -392,9 +473,12 @@ fn no_band_loses_more_light_than_it_receives() {
         single(if w < 0.5 { [u, v, 0.0] } else { [1.0, u * v, u] })
     });
     let rgb: Vec<[f32; 3]> = faces.chain([[1.0; 3], [0.0; 3]]).chain(random_colors(22)).collect();
-    for (sample, tolerance) in tolerances {
+    let film = film("konig8", 6);
+    for (cube, (sample, tolerance)) in
+        [cube(), &film].into_iter().flat_map(|cube| tolerances.map(|t| (cube, t)))
+    {
         for compact in [false, true] {
-            let path = desk.baked(spectral(tens(), compact), sample, 8, &rgb);
+            let path = desk.baked_with(cube, spectral(tens(), compact), sample, 8, &rgb);
             assert_eq!(Lint::of_file(&path).unwrap().findings, []);
             let read = texels(&path);
             let moved = |texel: &SpectralTexel, nm: f64| -> f64 {
@@ -628,5 +712,5 @@ fn fluorescence_survives_its_file() {
         read[0].fluorescence,
         Fluorescence::Dyes { concentration, .. } if concentration > 0.5
     ));
-    assert_eq!(read[1].fluorescence.concentration(), 0.0);
+    assert_eq!(read[1].fluorescence.dose(), 0.0);
 }

@@ -1,6 +1,6 @@
 //! The compact bispectral form: reflectance in bands and maps of the dyes.
 
-use upglow::{Cube, DyeModel, Interpolation, Mixing, Mixture, Node};
+use upglow::{Cube, Interpolation, Mixing, Mixture, Model, Node};
 use upglow_color::{Grid, LinearRgb};
 use upglow_fit::Polisher;
 
@@ -18,7 +18,7 @@ pub(super) struct CompactMaker<'c> {
     cube: &'c Cube,
     layout: CompactLayout,
     preview: RadianceMaker<'c>,
-    /// Pooled dyes fit in one map per dye only if each texel has a single material.
+    /// Pooled dyes and films fit in one map per dye only if each texel has a single material.
     polisher: Option<Polisher<'c>>,
 }
 
@@ -29,16 +29,27 @@ const CHANNELS: &str = "compact bispectral form, as docs/spectral-exr.md of upgl
                         R, G, B: linear color under the contract's light";
 
 impl<'c> CompactMaker<'c> {
-    pub(super) fn new(cube: &'c Cube, dyes: &DyeModel, grid: Grid) -> Result<Self, BakeError> {
-        let fits = dyes.curves().len() <= MOST_EXTRA_CHANNELS;
-        let form = if fits { CompactForm::PerDye } else { CompactForm::PerLobe };
-        let pooled = dyes.options().mixing == Mixing::Pooled;
-        let polisher = (fits && pooled).then(|| Polisher::new(cube)).transpose()?;
+    /// # Errors
+    ///
+    /// [`BakeError`] if the cube has no dyes, or its dyes do not fit the form.
+    pub(super) fn new(cube: &'c Cube, grid: Grid) -> Result<Self, BakeError> {
+        let (layout, is_single) = match cube.model() {
+            Model::Dyes(dyes) => {
+                let fits = dyes.curves().len() <= MOST_EXTRA_CHANNELS;
+                let form = if fits { CompactForm::PerDye } else { CompactForm::PerLobe };
+                let is_single = fits && dyes.options().mixing == Mixing::Pooled;
+                (CompactLayout::new(dyes, grid, form)?, is_single)
+            }
+            Model::Film(film) => (CompactLayout::in_film(film, grid)?, true),
+            model @ (Model::Reflectance | Model::Analytic(_)) => {
+                return Err(BakeError::NoDyes { found: model.name() });
+            }
+        };
         Ok(Self {
             cube,
-            layout: CompactLayout::new(dyes, grid, form)?,
+            layout,
             preview: RadianceMaker::new(cube, cube.contract().illuminant.clone()),
-            polisher,
+            polisher: is_single.then(|| Polisher::new(cube)).transpose()?,
         })
     }
 

@@ -28,6 +28,13 @@ const REFLECTANCE: [&str; 3] =
     ["reflectance.edge_from_550nm", "reflectance.level", "reflectance.slope_per_nm"];
 /// Number of the first dye, share of its neighbor, concentration.
 const DYES: [&str; 3] = ["fluorescence.dye", "fluorescence.weight", "fluorescence.concentration"];
+/// Numbers of the two dyes of a film, the denser first, and their optical densities.
+const FILM: [&str; 4] = [
+    "fluorescence.dye",
+    "fluorescence.second_dye",
+    "fluorescence.density",
+    "fluorescence.second_density",
+];
 /// Peak of the emission, Stokes shift, concentration.
 const BELLS: [&str; 3] = [
     "fluorescence.emission_peak_from_550nm",
@@ -37,12 +44,13 @@ const BELLS: [&str; 3] = [
 
 /// The channels of a model's materials, in the order of their numbers.
 pub(super) fn channel_names(model: &Model) -> impl Iterator<Item = &'static str> {
-    let fluorescence = match model {
-        Model::Reflectance => None,
-        Model::Dyes(_) => Some(DYES),
-        Model::Analytic(_) => Some(BELLS),
+    let fluorescence: &[&str] = match model {
+        Model::Reflectance => &[],
+        Model::Dyes(_) => &DYES,
+        Model::Film(_) => &FILM,
+        Model::Analytic(_) => &BELLS,
     };
-    REFLECTANCE.into_iter().chain(fluorescence.into_iter().flatten())
+    REFLECTANCE.into_iter().chain(fluorescence.iter().copied())
 }
 
 /// What the channels hold.
@@ -84,9 +92,10 @@ impl Maker for MaterialMaker<'_> {
             self.polisher.interpolate(rgb, &mut nodes)
         };
         made.expect("as many materials as texels");
-        let dyes = matches!(self.cube.model(), Model::Dyes(_));
         for (texel, node) in nodes.iter().enumerate() {
-            for (plane, value) in planes.iter_mut().zip(stored(node, dyes, self.sample)) {
+            for (plane, value) in
+                planes.iter_mut().zip(stored(node, self.cube.model(), self.sample))
+            {
                 plane[texel] = value;
             }
         }
@@ -94,7 +103,7 @@ impl Maker for MaterialMaker<'_> {
 }
 
 /// A node's numbers in the order of the channels.
-fn stored(node: &Node, dyes: bool, sample: Sample) -> [f32; 6] {
+fn stored(node: &Node, model: &Model, sample: Sample) -> [f32; MOST_CHANNELS] {
     let [edge_nm, level, slope_per_nm] = node.reflectance;
     let [first, second, third] = node.fluorescence;
     // Levels that would be infinite in half precision are white or black in any case.
@@ -103,13 +112,15 @@ fn stored(node: &Node, dyes: bool, sample: Sample) -> [f32; 6] {
         Sample::Half => towards_zero(slope_per_nm),
         _ => slope_per_nm,
     };
-    let fluorescence = match (dyes, first + second + third > 0.0) {
-        (_, false) => [0.0; 3],
-        (true, true) => [f32::from(node.dye), first, second],
-        (false, true) => [first - ORIGIN_NM, second, third],
+    let dyes = node.dyes.map(f32::from);
+    let [a, b, c, d] = match model {
+        _ if first + second + third == 0.0 => [0.0; 4],
+        Model::Reflectance => [0.0; 4],
+        Model::Dyes(_) => [dyes[0], first, second, 0.0],
+        Model::Film(_) => [dyes[0], dyes[1], first, second],
+        Model::Analytic(_) => [first - ORIGIN_NM, second, third, 0.0],
     };
-    let [a, b, c] = fluorescence;
-    [edge_nm - ORIGIN_NM, level, slope_per_nm, a, b, c]
+    [edge_nm - ORIGIN_NM, level, slope_per_nm, a, b, c, d]
 }
 
 /// The nearest half-precision number of no greater magnitude: rounding must not raise a slope above
@@ -124,16 +135,20 @@ fn towards_zero(value: f32) -> f32 {
     f16::from_bits(nearest.to_bits() - 1).to_f32()
 }
 
+/// Channels of the model that has most.
+pub(super) const MOST_CHANNELS: usize = REFLECTANCE.len() + FILM.len();
+
 /// The node of a texel's numbers, which do not include the color difference.
-pub(super) fn node_of(values: [f32; 6], model: &Model) -> Node {
-    let [edge, level, slope_per_nm, a, b, c] = values;
-    let (dye, fluorescence) = match model {
-        Model::Reflectance => (0, [0.0; 3]),
-        Model::Dyes(_) => (dye_index(a), [b, c, 0.0]),
-        Model::Analytic(_) => (0, [a + ORIGIN_NM, b, c]),
+pub(super) fn node_of(values: [f32; MOST_CHANNELS], model: &Model) -> Node {
+    let [edge, level, slope_per_nm, a, b, c, d] = values;
+    let (dyes, fluorescence) = match model {
+        Model::Reflectance => ([0; 2], [0.0; 3]),
+        Model::Dyes(_) => ([dye_index(a), 0], [b, c, 0.0]),
+        Model::Film(_) => ([a, b].map(dye_index), [c, d, 0.0]),
+        Model::Analytic(_) => ([0; 2], [a + ORIGIN_NM, b, c]),
     };
     let reflectance = [edge + ORIGIN_NM, level, slope_per_nm];
-    Node { reflectance, dye, fluorescence, de2000: 0.0 }
+    Node { reflectance, dyes, fluorescence, de2000: 0.0 }
 }
 
 /// The index of a dye from its channel.

@@ -6,7 +6,7 @@ use std::path::Path;
 use upglow::{Cube, Material, Model};
 
 use super::attributes::{MODEL, read_model};
-use super::material::{channel_names, node_of};
+use super::material::{MOST_CHANNELS, channel_names, node_of};
 use crate::exr::reader::ExrReader;
 use crate::spectral::error::FormError;
 
@@ -74,7 +74,7 @@ impl MaterialPicture {
     fn region(&mut self, columns: Range<usize>, y: usize) -> Result<Vec<Material>, FormError> {
         let planes = self.reader.read_region(columns.clone(), y..y + 1, &self.channels)?;
         let each = columns.enumerate().map(|(i, x)| {
-            let mut values = [0.0; 6];
+            let mut values = [0.0; MOST_CHANNELS];
             values.iter_mut().zip(&planes).for_each(|(value, plane)| *value = plane[i]);
             let node = node_of(values, self.model());
             let checked = node.check(self.model());

@@ -5,7 +5,7 @@
 mod dye;
 mod stated;
 
-use upglow::{Accounting, Bispectral, DyeModel, Fluorescence, Mixing, Mixture};
+use upglow::{Accounting, Bispectral, DyeModel, FilmModel, Fluorescence, Mixing, Mixture};
 use upglow_color::rounding::to_single;
 use upglow_color::{Grid, choices};
 
@@ -18,8 +18,8 @@ use crate::exr::attribute::Attributes;
 /// The meaning of the maps beside the reflectances.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum CompactForm {
-    /// One map per dye of the ring: its amount. Exact for single materials, and for mixtures of
-    /// separate dyes; the maps of separate dyes may also be filtered.
+    /// One map per dye: its amount, in a film its optical density. Exact for single materials, and for
+    /// mixtures of separate dyes; the maps of separate dyes may also be filtered.
     PerDye,
     /// Four pairs of maps: the position of a material on the ring of dyes, and its strength.
     /// Exact for every mixture of a look-up; needs float samples and must not be filtered.
@@ -27,6 +27,28 @@ pub(crate) enum CompactForm {
 }
 
 choices!(CompactForm, "compact form", PerDye = "dyes", PerLobe = "lobes");
+
+/// How the dyes of a texel act together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum CompactMixing {
+    /// As [`Mixing::Pooled`].
+    Pooled,
+    /// As [`Mixing::Separate`].
+    Separate,
+    /// As in a [`FilmModel`].
+    Film,
+}
+
+choices!(CompactMixing, "mixing", Pooled = "pooled", Separate = "separate", Film = "film");
+
+impl From<Mixing> for CompactMixing {
+    fn from(mixing: Mixing) -> Self {
+        match mixing {
+            Mixing::Pooled => Self::Pooled,
+            Mixing::Separate => Self::Separate,
+        }
+    }
+}
 
 /// Most channels beside the reflectances.
 pub(crate) const MOST_EXTRA_CHANNELS: usize = 12;
@@ -39,7 +61,7 @@ pub(crate) struct CompactLayout {
     wavelengths_nm: Vec<f64>,
     dyes: Vec<CompactDye>,
     accounting: Accounting,
-    mixing: Mixing,
+    mixing: CompactMixing,
     form: CompactForm,
 }
 
@@ -70,6 +92,24 @@ impl CompactLayout {
     ///
     /// [`FormError`] if the ring has more dyes than the form has maps, or two dyes have the same name.
     pub(crate) fn new(model: &DyeModel, grid: Grid, form: CompactForm) -> Result<Self, FormError> {
+        Self::of_dyes(model, model.options().mixing.into(), grid, form)
+    }
+
+    /// The layout for single materials of a film.
+    ///
+    /// # Errors
+    ///
+    /// [`FormError`] if the film has more dyes than the form has maps, or two dyes have the same name.
+    pub(crate) fn in_film(model: &FilmModel, grid: Grid) -> Result<Self, FormError> {
+        Self::of_dyes(model.dyes(), CompactMixing::Film, grid, CompactForm::PerDye)
+    }
+
+    fn of_dyes(
+        model: &DyeModel,
+        mixing: CompactMixing,
+        grid: Grid,
+        form: CompactForm,
+    ) -> Result<Self, FormError> {
         let half = f64::from(grid.step_nm()) / 2.0;
         let wavelengths_nm: Vec<f64> = grid.wavelengths_nm().collect();
         let named = model.set().dyes().iter().zip(model.curves());
@@ -87,8 +127,7 @@ impl CompactLayout {
                 }
             })
             .collect();
-        let options = model.options();
-        let (accounting, mixing) = (options.accounting, options.mixing);
+        let accounting = model.options().accounting;
         let layout = Self { wavelengths_nm, dyes, accounting, mixing, form };
         layout.check()?;
         Ok(layout)
@@ -154,14 +193,22 @@ impl CompactLayout {
         Ok(layout)
     }
 
-    /// Checks that each dye has a map and a unique name.
+    /// Checks that each dye has a map and a unique name, and that a film has the form for it.
     fn check(&self) -> Result<(), FormError> {
         let count = self.dyes.len();
         if self.form == CompactForm::PerDye && count > MOST_EXTRA_CHANNELS {
             let found = format!("{count} dyes");
-            let expected =
-                format!("1 to {MOST_EXTRA_CHANNELS} with a map each, or the form of lobes");
+            let other = match self.mixing {
+                CompactMixing::Film => "the spectral form that is not compact",
+                CompactMixing::Pooled | CompactMixing::Separate => "the form of lobes",
+            };
+            let expected = format!("1 to {MOST_EXTRA_CHANNELS} with a map each, or {other}");
             return Err(FormError::Dyes { found, expected });
+        }
+        if self.form == CompactForm::PerLobe && self.mixing == CompactMixing::Film {
+            let (name, found) = (MIXING.into(), format!("{:?}", self.mixing.to_string()));
+            let expected = "pooled or separate in the form of lobes".into();
+            return Err(FormError::Attribute { name, found, expected });
         }
         let mut names = self.dyes.iter().map(|dye| &dye.name).enumerate();
         let twin = names.find(|(i, name)| self.dyes[..*i].iter().any(|dye| dye.name == **name));
@@ -175,8 +222,8 @@ impl CompactLayout {
     ///
     /// The reflectance of a band is the diagonal of the re-radiation matrix: the reflected light, and
     /// the light that is re-emitted within the band. `None` if the form cannot hold the mixture exactly:
-    /// maps of dyes cannot hold materials of different pooled dyes, and lobes hold at most four
-    /// materials.
+    /// maps of dyes cannot hold materials of different pooled dyes, or more than one film, and lobes hold
+    /// at most four materials.
     pub(crate) fn encode(&self, mixture: &Mixture<'_>) -> Option<Vec<f32>> {
         let maps = match self.form {
             CompactForm::PerDye => self.dye_maps(mixture)?,
@@ -213,9 +260,15 @@ impl CompactLayout {
 
     /// Share of the power in the incident band that is re-emitted in the outgoing band.
     fn moved(&self, lobes: &[Lobe], incident: usize, outgoing: usize) -> f64 {
+        let density =
+            |lobe: &Lobe| lobe.strength * lobe.mean(&self.dyes, |dye| dye.absorption[incident]);
+        let absorbed_per_density = match self.mixing {
+            CompactMixing::Pooled | CompactMixing::Separate => 1.0,
+            CompactMixing::Film => FilmModel::absorbed_per_density(lobes.iter().map(density).sum()),
+        };
         lobes.iter().fold(0.0, |sum, lobe| {
             let mean = |of: &dyn Fn(&CompactDye) -> f64| lobe.mean(&self.dyes, of);
-            let absorbed = lobe.strength * mean(&|dye| dye.absorption[incident]);
+            let absorbed = density(lobe) * absorbed_per_density;
             let mean_emission_nm = mean(&|dye| dye.mean_emission_nm);
             let returned = self.accounting.share(self.wavelengths_nm[incident], mean_emission_nm);
             let quantum_yield = mean(&|dye| dye.quantum_yield);
@@ -244,7 +297,7 @@ impl CompactLayout {
             }
         };
         lobes.retain(|lobe| lobe.strength > 0.0 && lobe.strength.is_finite());
-        if self.mixing == Mixing::Pooled {
+        if self.mixing == CompactMixing::Pooled {
             return lobes;
         }
         let dyes =
@@ -258,8 +311,11 @@ impl CompactLayout {
 
     /// The amount of each dye.
     fn dye_maps(&self, mixture: &Mixture<'_>) -> Option<Vec<f64>> {
+        if self.mixing == CompactMixing::Film {
+            return self.density_maps(mixture);
+        }
         let parts = fluorescent_parts(mixture);
-        let pooled = self.mixing == Mixing::Pooled;
+        let pooled = self.mixing == CompactMixing::Pooled;
         if pooled && parts.iter().any(|part| part.0 != parts[0].0) {
             return None;
         }
@@ -267,6 +323,21 @@ impl CompactLayout {
         for (first, weight, strength) in parts {
             amounts[first] += strength * (1.0 - weight);
             amounts[(first + 1) % self.dyes.len()] += strength * weight;
+        }
+        Some(amounts)
+    }
+
+    /// The optical density of each dye, if all of the mixture is one film or nothing fluoresces.
+    fn density_maps(&self, mixture: &Mixture<'_>) -> Option<Vec<f64>> {
+        let mut amounts = vec![0.0; self.dyes.len()];
+        let count = mixture.parts().count();
+        for (_, material) in mixture.parts() {
+            if let Fluorescence::Film { dyes, densities } = material.fluorescence {
+                if count > 1 {
+                    return None;
+                }
+                dyes.into_iter().zip(densities).for_each(|(dye, density)| amounts[dye] += density);
+            }
         }
         Some(amounts)
     }
@@ -378,6 +449,64 @@ mod tests {
         }
     }
 
+    fn films() -> Vec<FilmModel> {
+        let kinds = [
+            (Accounting::Energy, QuantumYield::Fixed(1.0)),
+            (Accounting::Photon, QuantumYield::Measured),
+        ];
+        let set = || DyeSet::named("open8").unwrap();
+        kinds.map(|(accounting, q)| FilmModel::new(set(), accounting, q).unwrap()).into()
+    }
+
+    #[test]
+    fn a_film_expands_exactly_and_a_mixture_of_films_is_refused() {
+        for film in films() {
+            let layout = CompactLayout::in_film(&film, bands()).unwrap();
+            let back = CompactLayout::from_attributes(&layout.attributes()).unwrap();
+            assert_eq!(back, layout);
+            let model = Model::Film(film);
+            let reflectance = Sigmoid::flat(0.7);
+            let none = Fluorescence::None;
+            for (fluorescence, dyes) in [
+                (none, 0),
+                (Fluorescence::film((3, 1.7), (3, 0.0)), 1),
+                (Fluorescence::film((6, 0.4), (1, 5.9)), 2),
+                (Fluorescence::film((2, 1e-5), (3, 1e-6)), 2),
+            ] {
+                let mixture = Mixture::of(&model, Material { reflectance, fluorescence });
+                check(&layout, &mixture);
+                let maps = layout.encode(&mixture).unwrap().split_off(bands().len());
+                assert_eq!(maps.iter().filter(|v| **v > 0.0).count(), dyes);
+            }
+        }
+        let film = films().remove(0);
+        let layout = CompactLayout::in_film(&film, bands()).unwrap();
+        let edge = Sigmoid::flat(0.5).to_edge(550.0);
+        let node = Node::new(edge, Fluorescence::film((3, 1.7), (5, 0.2)), 0.0);
+        let (contract, fit) = (Contract::default(), FitRecord::default());
+        let cube = Cube::new(contract, Model::Film(film), fit, 2, vec![node; 8]).unwrap();
+        let mixture = cube.lookup(LinearRgb([0.3, 0.62, 0.41]), Interpolation::Blend).unwrap();
+        assert_eq!(layout.encode(&mixture), None);
+    }
+
+    #[test]
+    fn films_of_many_dyes_and_lobes_of_films_are_refused() {
+        let set = DyeSet::named("wide14").unwrap();
+        let film = FilmModel::new(set, Accounting::Photon, QuantumYield::Measured).unwrap();
+        assert_eq!(
+            CompactLayout::in_film(&film, bands()).unwrap_err().to_string(),
+            "14 dyes, expected 1 to 12 with a map each, or the spectral form that is not compact"
+        );
+        let layout = CompactLayout::in_film(&films()[0], bands()).unwrap();
+        let mut attributes = layout.attributes();
+        attributes.insert(FORM.into(), "lobes".into());
+        assert_eq!(
+            CompactLayout::from_attributes(&attributes).unwrap_err().to_string(),
+            "attribute upglow.compact.mixing is \"film\", expected pooled or separate in the form of \
+             lobes"
+        );
+    }
+
     /// A cube whose nodes differ, so that a look-up blends four of them.
     fn cube(dyes: DyeModel) -> Cube {
         let node = |i: u16| {
@@ -390,7 +519,7 @@ mod tests {
             let _ = (c0, c1);
             Node {
                 reflectance: [500.0, to_single(c2), 0.0],
-                dye: first.try_into().unwrap(),
+                dyes: [first.try_into().unwrap(), 0],
                 fluorescence: [to_single(weight), to_single(concentration), 0.0],
                 de2000: 0.0,
             }

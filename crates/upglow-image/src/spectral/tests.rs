@@ -3,9 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use upglow::{Cube, DyeModel, DyeOptions, DyeSet, Fluorescence, Material, Mixture, Model, Sigmoid};
+use upglow::{
+    Accounting, Cube, DyeModel, DyeOptions, DyeSet, FilmModel, Fluorescence, Material, Mixture,
+    Model, QuantumYield, Sigmoid,
+};
 use upglow_color::{Contract, Grid, Illuminant, RgbSpace};
-use upglow_fit::{FitOptions, Unwatched, build_cube};
+use upglow_fit::{Preset, Unwatched, build_cube};
 
 use super::channel::{
     BISPECTRAL_UNIT, BispectralUnit, EMISSIVE_UNITS, LAYOUT_VERSION, LAYOUT_VERSION_VALUE,
@@ -55,24 +58,39 @@ fn names_of(bands: Grid) -> Vec<String> {
     names
 }
 
-fn model() -> DyeModel {
+fn dyes() -> DyeModel {
     DyeModel::new(DyeSet::named("konig8").unwrap(), DyeOptions::default()).unwrap()
 }
 
-fn material(i: usize) -> Material {
+fn film() -> FilmModel {
+    let set = DyeSet::named("konig8").unwrap();
+    FilmModel::new(set, Accounting::Photon, QuantumYield::Measured).unwrap()
+}
+
+/// The models with a compact form of one material per texel.
+fn models() -> [Model; 2] {
+    [Model::Dyes(dyes()), Model::Film(film())]
+}
+
+fn material(i: usize, model: &Model) -> Material {
     let u = i as f64 / 6.0;
-    let fluorescence = Fluorescence::Dyes { first: i, weight: u, concentration: 0.3 + 0.5 * u };
+    let fluorescence = match model {
+        Model::Film(_) => Fluorescence::film((i, 0.3 + 5.0 * u), (7 - i, 2.0 * u)),
+        _ => Fluorescence::Dyes { first: i, weight: u, concentration: 0.3 + 0.5 * u },
+    };
     Material { reflectance: Sigmoid::flat(0.2 + 0.5 * u), fluorescence }
 }
 
 /// A full bispectral file and a compact one of the same six texels, with preview.
-fn full_and_compact(folder: &Path, bands: Grid) -> [PathBuf; 2] {
-    let dyes = model();
-    let layout = CompactLayout::new(&dyes, bands, CompactForm::PerDye).unwrap();
-    let model = Model::Dyes(dyes);
+fn full_and_compact(folder: &Path, bands: Grid, model: &Model) -> [PathBuf; 2] {
+    let layout = match model {
+        Model::Film(film) => CompactLayout::in_film(film, bands),
+        _ => CompactLayout::new(&dyes(), bands, CompactForm::PerDye),
+    };
+    let layout = layout.unwrap();
     let preview = [0.25, 0.5, 0.75];
     let texel = |i: usize| {
-        let compact = layout.encode(&Mixture::of(&model, material(i))).unwrap();
+        let compact = layout.encode(&Mixture::of(model, material(i, model))).unwrap();
         let matrix = layout.expand(&compact).unwrap();
         let diagonal = (0..bands.len()).map(|b| matrix[b][b]).collect::<Vec<_>>();
         let pairs = rising_pairs(bands.len()).map(|[i, o]| matrix[o][i]).collect::<Vec<_>>();
@@ -93,9 +111,15 @@ fn full_and_compact(folder: &Path, bands: Grid) -> [PathBuf; 2] {
 
 #[test]
 fn a_compact_file_reads_as_the_full_one() {
+    for model in models() {
+        reads_as_the_full_one(&model);
+    }
+}
+
+fn reads_as_the_full_one(model: &Model) {
     let folder = tempfile::tempdir().unwrap();
     let bands = Grid::try_new(380, 780, 10).unwrap();
-    let paths = full_and_compact(folder.path(), bands);
+    let paths = full_and_compact(folder.path(), bands, model);
     for path in &paths {
         let found = Lint::of_file(path).unwrap();
         assert_eq!(found.findings, [], "{}", path.display());
@@ -202,9 +226,15 @@ fn other_programs_read_our_files() {
         println!("skipped: other_programs_read_our_files, no python3 with OpenEXR and numpy");
         return;
     };
+    for model in models() {
+        other_programs_read(&python, &model);
+    }
+}
+
+fn other_programs_read(python: &Path, model: &Model) {
     let folder = tempfile::tempdir().unwrap();
     let bands = Grid::try_new(380, 780, 50).unwrap();
-    let [full, compact] = full_and_compact(folder.path(), bands);
+    let [full, compact] = full_and_compact(folder.path(), bands, model);
     // The values that other programs should see.
     let mut picture = SpectralPicture::open(&full).unwrap();
     let mut expected = String::new();
@@ -223,7 +253,7 @@ fn other_programs_read_our_files() {
     }
     let list = folder.path().join("expected.txt");
     std::fs::write(&list, expected).unwrap();
-    agrees(&python, "", &[&full, &compact, &list]);
+    agrees(python, "", &[&full, &compact, &list]);
 }
 
 /// Reads files with other programs, which must agree with ours.
@@ -251,8 +281,8 @@ fn baked(folder: &Path, name: &str, form: Form, model: &Model) -> (PathBuf, Cube
         [0.2, 0.6, 0.1],
     ];
     write(&input, &names, Attributes::from([space]), &colors.map(|c| c.to_vec()));
-    let cube =
-        build_cube(&Contract::default(), model, FitOptions::default(), 5, &Unwatched).unwrap();
+    let cube = build_cube(&Contract::default(), model, Preset::Konig2020.options(), 5, &Unwatched)
+        .unwrap();
     let options = BakeOptions { assumed: Assumed::default(), repair: None, sample: Sample::Float };
     let output = folder.join(name);
     Baker::new(&cube, form, options).unwrap().bake(&input, &output, &Unwatched).unwrap();
@@ -281,7 +311,7 @@ fn other_programs_read_baked_materials_and_light() {
     let light = Illuminant::named("A").unwrap();
     let forms = [Form::Material, Form::Radiance { light }];
     for (form, channels) in forms.into_iter().zip([6, 3]) {
-        let (path, _) = baked(folder.path(), "baked.exr", form, &Model::Dyes(model()));
+        let (path, _) = baked(folder.path(), "baked.exr", form, &Model::Dyes(dyes()));
         let list = folder.path().join("expected.txt");
         let expected = samples(&path);
         assert_eq!(expected.lines().count(), 6 * channels);

@@ -50,10 +50,16 @@ def expand(channels, header):
     else:
         one = np.eye(len(dyes))[:, :, None, None] * np.ones_like(maps[0])
         lobes = [(maps[d], one[d]) for d in range(len(dyes))]
+    per_density = 1.0
+    if header["upglow.compact.mixing"] == "film":
+        density = np.tensordot(a.T, maps, axes=1)
+        thin = density < 1e-6
+        density = np.where(thin, 1.0, density)
+        per_density = np.where(thin, np.log(10.0), (1.0 - 10.0**-density) / density)
     result = 0.0
     for strength, share in lobes:
         mixed = lambda values: np.tensordot(values.T, share, axes=1)
-        returned = strength * mixed(a) * mixed(q)
+        returned = strength * mixed(a) * mixed(q) * per_density
         if header["upglow.compact.accounting"] == "photon":
             mean = np.maximum(mixed(mean_nm), 1e-9)
             returned = returned * np.minimum(nm[:, None, None] / mean, 1.0)
