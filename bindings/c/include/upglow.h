@@ -93,7 +93,7 @@ typedef struct {
     const char *observer;
     // Chromatic adaptation from the space's white to the light's: "bradford" or "none".
     const char *adaptation;
-    // Model of fluorescence: "dyes", "analytic", or "reflectance" for none.
+    // Model of fluorescence: "dyes", "film", "analytic", or "reflectance" for none.
     const char *model;
     // The file's header, in JSON.
     const char *header_json;
@@ -306,7 +306,7 @@ UpglowStatus upglow_outgoing_elastic_probability(const UpglowMaterial *material,
                                                  float in_nm,
                                                  float *probability);
 
-// Computes the colors of a cube's materials under a light: "D65", "D60", "D55", "D50", "A" or "E",
+// Computes the colors of a cube's materials under a light: "D65", "D60", "D55", "D50", "A", "E", "FL2", "FL11", "HP1" or "LED-B3",
 // or under the cube's own if `illuminant` is null.
 //
 // `*colors` receives colors that the caller owns and must destroy with `upglow_colors_destroy`. All

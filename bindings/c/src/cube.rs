@@ -38,7 +38,7 @@ pub struct UpglowCubeFacts {
     pub observer: *const c_char,
     /// Chromatic adaptation from the space's white to the light's: "bradford" or "none".
     pub adaptation: *const c_char,
-    /// Model of fluorescence: "dyes", "analytic", or "reflectance" for none.
+    /// Model of fluorescence: "dyes", "film", "analytic", or "reflectance" for none.
     pub model: *const c_char,
     /// The file's header, in JSON.
     pub header_json: *const c_char,
@@ -67,7 +67,7 @@ impl UpglowCube {
         UpglowCubeFacts {
             resolution: u32::try_from(self.cube.resolution()).expect("at most 256"),
             fluoresces: (0..self.cube.nodes().len())
-                .any(|node| self.cube.node_material(node).fluorescence.concentration() > 0.0),
+                .any(|node| self.cube.node_material(node).fluorescence.dose() > 0.0),
             rgb_space,
             primaries: space.primaries(),
             white: space.white(),

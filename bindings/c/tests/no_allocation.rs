@@ -6,7 +6,10 @@ use std::ffi::CStr;
 use std::mem::MaybeUninit;
 use std::ptr::{null, null_mut};
 
-use upglow::{Cube, DyeModel, DyeOptions, DyeSet, Edge, FitRecord, Fluorescence, Model, Node};
+use upglow::{
+    Accounting, Bispectral as _, Cube, Draw, DyeModel, DyeOptions, DyeSet, Edge, FilmModel,
+    FitRecord, Fluorescence, Model, Node, QuantumYield,
+};
 use upglow_c::*;
 use upglow_color::Contract;
 
@@ -40,19 +43,29 @@ fn allocations(work: impl FnOnce()) -> usize {
     ALLOCATIONS.get() - before
 }
 
-fn bytes() -> Vec<u8> {
-    let set = DyeSet::named("konig8").expect("built in");
-    let model = DyeModel::new(set, DyeOptions::default()).expect("valid");
-    let edge = Edge { edge_nm: 550.0, level: 0.5, slope_per_nm: 0.005 };
-    let fluorescence = Fluorescence::Dyes { first: 2, weight: 0.3, concentration: 0.8 };
-    let nodes = vec![Node::new(edge, fluorescence, 0.0); 8];
-    let (contract, record) = (Contract::default(), FitRecord::default());
-    let cube = Cube::new(contract, Model::Dyes(model), record, 2, nodes).expect("valid");
-    cube.to_bytes()
+fn set() -> DyeSet {
+    DyeSet::named("konig8").expect("built in")
 }
 
-fn open() -> *mut UpglowCube {
-    let (bytes, mut cube) = (bytes(), null_mut());
+fn of_dyes() -> Cube {
+    let model = DyeModel::new(set(), DyeOptions::default()).expect("valid");
+    let fluorescence = Fluorescence::Dyes { first: 2, weight: 0.3, concentration: 0.8 };
+    cube(Model::Dyes(model), fluorescence)
+}
+
+fn of_a_film() -> Cube {
+    let model = FilmModel::new(set(), Accounting::Photon, QuantumYield::Fixed(1.0));
+    cube(Model::Film(model.expect("valid")), Fluorescence::film((2, 1.7), (5, 0.4)))
+}
+
+fn cube(model: Model, fluorescence: Fluorescence) -> Cube {
+    let edge = Edge { edge_nm: 550.0, level: 0.5, slope_per_nm: 0.005 };
+    let nodes = vec![Node::new(edge, fluorescence, 0.0); 8];
+    Cube::new(Contract::default(), model, FitRecord::default(), 2, nodes).expect("valid")
+}
+
+fn open(cube: &Cube) -> *mut UpglowCube {
+    let (bytes, mut cube) = (cube.to_bytes(), null_mut());
     // SAFETY: the pointers are those of a slice and of a variable.
     let status = unsafe { upglow_cube_from_memory(bytes.as_ptr(), bytes.len(), &raw mut cube) };
     assert_eq!(status, UpglowStatus::Ok);
@@ -66,7 +79,12 @@ fn the_counter_counts() {
 
 #[test]
 fn nothing_is_allocated_after_the_load() {
-    let (cube, mut colors) = (open(), null_mut());
+    assert_allocates_nothing(open(&of_dyes()));
+    assert_allocates_nothing(open(&of_a_film()));
+}
+
+fn assert_allocates_nothing(cube: *mut UpglowCube) {
+    let mut colors = null_mut();
     // SAFETY: the pointers are those of a live cube and of a variable.
     unsafe { upglow_colors_create(cube, null(), &raw mut colors) };
     let mut material = MaybeUninit::<UpglowMaterial>::uninit();
@@ -110,7 +128,7 @@ fn nothing_is_allocated_after_the_load() {
 
 #[test]
 fn a_failure_is_told_without_allocating() {
-    let cube = open();
+    let cube = open(&of_dyes());
     let mut material = MaybeUninit::<UpglowMaterial>::uninit();
     let rgb = [0.2_f32, 1.5, 0.7];
     let mut status = UpglowStatus::Ok;
@@ -122,6 +140,63 @@ fn a_failure_is_told_without_allocating() {
     // SAFETY: the message ends with a zero byte and is not written to meanwhile.
     let message = unsafe { CStr::from_ptr(upglow_message()) };
     assert_eq!(message.to_str(), Ok("green is 1.5, expected 0 to 1, the range of the cube"));
+    // SAFETY: nobody uses it any more.
+    unsafe { upglow_cube_destroy(cube) };
+}
+
+/// What the functions of C say of a film: they are the library's, to the last digit.
+#[test]
+fn a_film_is_the_library_s() {
+    let film = of_a_film();
+    let (cube, table) = (open(&film), film.lookup_table());
+    let mut facts = MaybeUninit::<UpglowCubeFacts>::uninit();
+    // SAFETY: the pointers are those of a live cube and of a variable.
+    assert_eq!(unsafe { upglow_cube_facts(cube, facts.as_mut_ptr()) }, UpglowStatus::Ok);
+    // SAFETY: the call before filled them, and their text lives as long as the cube.
+    let (facts, model) = unsafe {
+        let facts = facts.assume_init();
+        (facts, CStr::from_ptr(facts.model))
+    };
+    assert_eq!((facts.fluoresces, model.to_str()), (true, Ok("film")));
+    let rgb = [0.2_f32, 0.5, 0.7];
+    let expected = table.lookup(rgb).expect("in range");
+    let mut material = MaybeUninit::<UpglowMaterial>::uninit();
+    let mut sample = MaybeUninit::<UpglowSample>::uninit();
+    let mut found = [0.0_f32; 5];
+    // SAFETY: the pointers are those of live handles and of variables; the first call fills the
+    // material that the others read.
+    let (material, statuses) = unsafe {
+        let material = material.as_mut_ptr();
+        let statuses = [
+            upglow_look_up(cube, rgb.as_ptr(), material),
+            upglow_reflectance(material, 500.0, &raw mut found[0]),
+            upglow_albedo(material, 450.0, &raw mut found[1]),
+            upglow_reradiation(material, 450.0, 600.0, &raw mut found[2]),
+            upglow_incident_pdf(material, 450.0, 600.0, &raw mut found[3]),
+            upglow_outgoing_pdf(material, 450.0, 600.0, &raw mut found[4]),
+        ];
+        (material, statuses)
+    };
+    assert_eq!(statuses, [UpglowStatus::Ok; 6]);
+    let answers = [
+        expected.reflectance(500.0),
+        expected.albedo(450.0),
+        expected.reradiation_per_nm(450.0, 600.0),
+        expected.incident_pdf_per_nm(450.0, 600.0),
+        expected.outgoing_pdf_per_nm(450.0, 600.0),
+    ];
+    assert_eq!(found, answers);
+    assert!(answers.iter().all(|answer| *answer > 0.0));
+    let u = [0.9_f32, 0.5];
+    // SAFETY: the pointers are those of a filled material and of variables.
+    let sample = unsafe {
+        let status = upglow_sample_incident(material, 600.0, u.as_ptr(), sample.as_mut_ptr());
+        assert_eq!(status, UpglowStatus::Ok);
+        sample.assume_init()
+    };
+    let drawn = expected.sample_incident(600.0, u).expect("it reflects and re-radiates");
+    assert_eq!((sample.lambda_nm, sample.throughput), (drawn.nm, drawn.throughput));
+    assert!(matches!(drawn.draw, Draw::Fluorescent { per_nm } if per_nm == sample.pdf_per_nm));
     // SAFETY: nobody uses it any more.
     unsafe { upglow_cube_destroy(cube) };
 }

@@ -51,8 +51,8 @@ def traced(plugins: Path) -> None:
 
 @pytest.fixture(scope="session")
 def cube() -> upglow.Cube:
-    """ACEScg under D65, the default dyes."""
-    return upglow.build(resolution=CUBE_NODES)
+    """ACEScg under D65, the dyes and limits of König et al. 2020."""
+    return upglow.build(preset="konig2020", resolution=CUBE_NODES)
 
 
 @pytest.fixture(scope="session")

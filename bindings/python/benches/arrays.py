@@ -39,7 +39,7 @@ def main() -> None:
     for name, least in (("colors", 1), ("resolution", 2)):
         if (found := getattr(options, name)) < least:
             parser.error(f"--{name} is {found}, expected {least} or more")
-    cube = upglow.build(resolution=options.resolution)
+    cube = upglow.build(preset="konig2020", resolution=options.resolution)
     double = np.random.default_rng(0).random((options.colors, 3))
     single = double.astype(np.float32)
     few = single[: max(options.colors // 40, 1)]

@@ -229,8 +229,9 @@ def main() -> None:
     import upglow.mitsuba
 
     contract = upglow.Contract(space="acescg", illuminant="D65")
-    shining = upglow.build(contract, resolution=options.resolution)
-    passive = upglow.build(contract, model=upglow.Reflectance(), resolution=options.resolution)
+    n, plain = options.resolution, upglow.Reflectance()
+    shining = upglow.build(contract, preset="konig2020", resolution=n)
+    passive = upglow.build(contract, preset="konig2020", model=plain, resolution=n)
     for name, color in (("magenta", MAGENTA), ("mint", MINT)):
         ours, theirs = shining.check(color), passive.check(color)
         print(

@@ -71,7 +71,7 @@ assert abs((elastic + fluorescent) / exact - 1.0) < 0.01
 picture = rng.random((100, 100, 3), dtype=np.float32)
 spectra = cube.reflectance(picture, np.arange(400.0, 701.0, 10.0))
 texels = cube.material(picture)
-fluorescent_texels = int((texels.concentration > 0).sum())
+fluorescent_texels = int((texels.dose > 0).sum())
 print(f"spectra {spectra.shape} {spectra.dtype}; {fluorescent_texels} texels fluoresce")
 
 # %% The file is safetensors, which any program can read. It is written completely or not at all.

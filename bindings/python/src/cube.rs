@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
-use upglow::{CubeFileError, DyeCurves, LookupTable, Model};
+use upglow::{CubeFileError, DyeCurves, DyeModel, FilmModel, LookupTable, Model};
 use upglow_fit::CubeSummary;
 
 use crate::contract::Contract;
@@ -29,10 +29,7 @@ impl Cube {
 
     /// Empty where the model has no dyes.
     fn dyes(&self) -> &[DyeCurves] {
-        match self.cube.model() {
-            Model::Dyes(model) => model.curves(),
-            _ => &[],
-        }
+        self.cube.model().dyes().map_or(&[], DyeModel::curves)
     }
 
     /// The cube compiled for look-ups in single precision.
@@ -41,8 +38,12 @@ impl Cube {
     }
 }
 
-/// Nodes, exact, within 1 and 2 ΔE00; mean, 95th percentile and greatest ΔE00; fluorescent nodes.
-type Summary = (usize, usize, usize, usize, f64, f64, f64, usize);
+/// Optical densities, and curves `[dye][density][wavelength]`.
+type Proposals<'py> = ([f64; 4], Bound<'py, PyArray3<f64>>);
+
+/// Nodes, exact, within 1 and 2 ΔE00; mean, 95th percentile and greatest ΔE00; fluorescent nodes; nodes
+/// of each kind of material.
+type Summary = (usize, usize, usize, usize, f64, f64, f64, usize, [u64; 4]);
 
 fn file_error(error: CubeFileError) -> PyErr {
     match error {
@@ -99,7 +100,7 @@ impl Cube {
         self.cube.header_json()
     }
 
-    /// `reflectance`, `dye`, `fluorescence` and `de2000` of every node, one per row.
+    /// `reflectance`, `dyes`, `fluorescence` and `de2000` of every node, one per row.
     fn nodes<'py>(&self, py: Python<'py>) -> PyResult<Arrays<'py>> {
         arrays(py, self.cube.nodes())
     }
@@ -128,11 +129,21 @@ impl Cube {
         PyArray1::from_iter(py, numbers).reshape([dyes.len(), 2])
     }
 
+    /// Optical densities of a film, and what each dye by itself returns at them and a quantum yield
+    /// of 1, `[dye][density][wavelength]`, 300 to 830 nm by 1 nm; `None` for other models.
+    fn film_proposals<'py>(&self, py: Python<'py>) -> PyResult<Option<Proposals<'py>>> {
+        let Model::Film(film) = self.cube.model() else { return Ok(None) };
+        let of_dye = |dye: usize| film.proposed(dye).map(<[f64]>::to_vec).to_vec();
+        let curves: Vec<_> = (0..film.dyes().curves().len()).map(of_dye).collect();
+        Ok(Some((FilmModel::LEVELS, PyArray3::from_vec3(py, &curves)?)))
+    }
+
     /// How well the nodes match their colors.
     fn summary(&self) -> Summary {
         let summary = CubeSummary::of(&self.cube);
-        let CubeSummary { nodes, exact, within_1, within_2, fluorescent, .. } = summary;
+        let CubeSummary { nodes, exact, within_1, within_2, fluorescent, kinds, .. } = summary;
+        let kinds = kinds.each().map(|(_, count)| count);
         let CubeSummary { mean_de2000, p95_de2000, max_de2000, .. } = summary;
-        (nodes, exact, within_1, within_2, mean_de2000, p95_de2000, max_de2000, fluorescent)
+        (nodes, exact, within_1, within_2, mean_de2000, p95_de2000, max_de2000, fluorescent, kinds)
     }
 }

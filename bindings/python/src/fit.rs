@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use rayon::prelude::*;
 use upglow::Node;
 use upglow_color::{LinearRgb, Metric};
-use upglow_fit::{FitOptions, Fitter, Method, Progress, Watch, build_cube};
+use upglow_fit::{FitOptions, Fitter, GivenOptions, Method, Preset, Progress, Watch, build_cube};
 
 use crate::arrays::triples;
 use crate::contract::Contract;
@@ -19,8 +19,20 @@ use crate::threads::on_threads;
 use crate::watch::{Watcher, watched};
 use crate::word::Word;
 
-/// Metric, slope limit (1/nm), method and sweeps, as Python gives them.
-type Options = (Word<Metric>, Option<f64>, Word<Method>, Option<u32>);
+/// A slope limit (1/nm) in a tuple, because `None` is no limit.
+type Limit = (Option<f64>,);
+
+/// Preset, metric, slope limits of reflectance alone and under dyes, whether they are relaxed, method and
+/// sweeps, as Python gives them; `None` for those of the preset.
+type Options = (
+    Word<Preset>,
+    Option<Word<Metric>>,
+    Option<Limit>,
+    Option<Limit>,
+    Option<bool>,
+    Option<Word<Method>>,
+    Option<u32>,
+);
 
 /// Fits a material for every node of a cube.
 #[pyfunction]
@@ -33,9 +45,15 @@ pub(crate) fn build(
     threads: Option<usize>,
     report: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Cube> {
-    let (Word(metric), slope_max_per_nm, Word(method), sweeps) = options;
-    let sweeps = sweeps.unwrap_or(method.default_sweeps());
-    let options = FitOptions { metric, slope_max_per_nm, method, sweeps };
+    let (Word(preset), metric, slope_max, slope_under_dyes, relaxed, method, sweeps) = options;
+    let options = preset.options().with(GivenOptions {
+        metric: metric.map(|word| word.0),
+        slope_max_per_nm: slope_max.map(|(limit,)| limit),
+        slope_under_dyes_per_nm: slope_under_dyes.map(|(limit,)| limit),
+        relaxed,
+        method: method.map(|word| word.0),
+        sweeps,
+    });
     let built = watched(py, report, |watcher| {
         on_threads(threads, || {
             build_cube(&contract.contract, &model.0, options, resolution, watcher)

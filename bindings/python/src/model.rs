@@ -3,8 +3,11 @@
 use std::path::PathBuf;
 
 use pyo3::prelude::*;
-use upglow::{Accounting, AnalyticModel, DyeModel, DyeOptions, DyeSetError, Mixing, QuantumYield};
+use upglow::{
+    Accounting, AnalyticModel, DyeModel, DyeOptions, DyeSetError, FilmModel, Mixing, QuantumYield,
+};
 use upglow_color::MeasuredDye;
+use upglow_fit::Preset;
 
 use crate::errors::{os_error, value_error};
 use crate::word::Word;
@@ -89,12 +92,27 @@ enum Yield {
     Word(String),
 }
 
+impl Yield {
+    fn resolved(self) -> PyResult<QuantumYield> {
+        match self {
+            Self::Number(q) => Ok(QuantumYield::Fixed(q)),
+            Self::Word(word) => word.parse().map_err(value_error),
+        }
+    }
+}
+
 #[pymethods]
 impl Model {
     /// No fluorescence.
     #[staticmethod]
     fn reflectance() -> Self {
         Self(upglow::Model::Reflectance)
+    }
+
+    /// That of a preset.
+    #[staticmethod]
+    fn of_preset(preset: Word<Preset>) -> Self {
+        Self(preset.0.model())
     }
 
     /// Absorption and emission by formula; widths are nm.
@@ -122,17 +140,22 @@ impl Model {
         let options = DyeOptions {
             accounting: accounting.0,
             mixing: mixing.0,
-            quantum_yield: match quantum_yield {
-                Yield::Number(q) => QuantumYield::Fixed(q),
-                Yield::Word(word) => word.parse().map_err(value_error)?,
-            },
+            quantum_yield: quantum_yield.resolved()?,
             optical_density,
         };
         let model = DyeModel::new(set.0.clone(), options).map_err(value_error)?;
         Ok(Self(upglow::Model::Dyes(model)))
     }
 
-    /// `reflectance`, `dyes` or `analytic`.
+    /// Any two of a set of measured dyes in a film.
+    #[staticmethod]
+    fn film(set: &DyeSet, accounting: Word<Accounting>, quantum_yield: Yield) -> PyResult<Self> {
+        FilmModel::new(set.0.clone(), accounting.0, quantum_yield.resolved()?)
+            .map(|model| Self(upglow::Model::Film(model)))
+            .map_err(value_error)
+    }
+
+    /// `reflectance`, `dyes`, `film` or `analytic`.
     #[getter]
     fn name(&self) -> &'static str {
         self.0.name()
@@ -141,11 +164,7 @@ impl Model {
     /// Dyes without a published quantum yield; with `measured`, their yield is taken as 1.
     #[getter]
     fn without_published_yield(&self) -> Vec<String> {
-        match &self.0 {
-            upglow::Model::Dyes(model) => {
-                model.without_published_yield().into_iter().map(str::to_owned).collect()
-            }
-            _ => Vec::new(),
-        }
+        let without = self.0.dyes().map(DyeModel::without_published_yield).unwrap_or_default();
+        without.into_iter().map(str::to_owned).collect()
     }
 }

@@ -1,6 +1,6 @@
 //! Arrays of colors, one per row, and their materials.
 
-use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray2};
+use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray2, PyReadwriteArray2};
 use pyo3::prelude::*;
 use upglow::{
     Bispectral, Interpolation, LookupError, LookupTable, Mixture, Model, Node, PackedMixture,
@@ -16,8 +16,8 @@ use crate::threads::on_threads;
 pub(crate) enum Subjects<'py> {
     Single(PyReadonlyArray2<'py, f32>),
     Double(PyReadonlyArray2<'py, f64>),
-    /// `reflectance`, `dye` and `fluorescence` of nodes.
-    Stored(PyReadonlyArray2<'py, f32>, PyReadonlyArray1<'py, u8>, PyReadonlyArray2<'py, f32>),
+    /// `reflectance`, `dyes` and `fluorescence` of nodes.
+    Stored(PyReadonlyArray2<'py, f32>, PyReadonlyArray2<'py, u8>, PyReadonlyArray2<'py, f32>),
 }
 
 /// Materials, one per row.
@@ -69,8 +69,8 @@ macro_rules! with_rows {
                 let $rows = $crate::rows::doubles(&$cube.cube, $crate::arrays::triples(rgb)?);
                 $work.map(pyo3::Bound::into_any)
             }
-            $crate::rows::Subjects::Stored(reflectance, dye, fluorescence) => {
-                let nodes = $crate::nodes::nodes(reflectance, dye, fluorescence)?;
+            $crate::rows::Subjects::Stored(reflectance, dyes, fluorescence) => {
+                let nodes = $crate::nodes::nodes(reflectance, dyes, fluorescence)?;
                 let $rows = $crate::rows::stored($cube.cube.model(), nodes);
                 $work.map(pyo3::Bound::into_any)
             }

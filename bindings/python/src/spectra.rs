@@ -62,8 +62,8 @@ pub(crate) fn reradiation_matrix<'py>(
             let rgb: Vec<_> = triples(rgb)?.iter().map(|v| v.map(f64::from)).collect();
             matrices(py, &doubles(&cube.cube, &rgb), grid, threads)
         }
-        Subjects::Stored(reflectance, dye, fluorescence) => {
-            let nodes = nodes(reflectance, dye, fluorescence)?;
+        Subjects::Stored(reflectance, dyes, fluorescence) => {
+            let nodes = nodes(reflectance, dyes, fluorescence)?;
             matrices(py, &stored(cube.cube.model(), nodes), grid, threads)
         }
     }

@@ -15,8 +15,8 @@ REPOSITORY = Path(__file__).resolve().parents[3]
 
 @pytest.fixture(scope="session")
 def cube() -> upglow.Cube:
-    """ACEScg under D65, the default dyes."""
-    return upglow.build(resolution=9)
+    """ACEScg under D65, the dyes and limits of König et al. 2020."""
+    return upglow.build(preset="konig2020", resolution=9)
 
 
 @pytest.fixture(
@@ -24,14 +24,16 @@ def cube() -> upglow.Cube:
     params=[
         upglow.Dyes(),
         upglow.Dyes(accounting="photon", mixing="separate", quantum_yield=0.8, optical_density=2),
+        upglow.Film(quantum_yield=0.8),
+        upglow.Film(accounting="energy"),
         upglow.Analytic(accounting="photon", quantum_yield=0.9),
         upglow.Reflectance(),
     ],
-    ids=["pooled", "separate", "analytic", "reflectance"],
+    ids=["pooled", "separate", "film", "film_energy", "analytic", "reflectance"],
 )
 def any_cube(request: pytest.FixtureRequest) -> upglow.Cube:
     """A cube of each kind of model."""
-    return upglow.build(model=request.param, resolution=5)
+    return upglow.build(preset="konig2020", model=request.param, resolution=5)
 
 
 @pytest.fixture

@@ -96,7 +96,9 @@ class Reader:
         first, second, third = self.arrays["fluorescence"][b, g, r].astype(float)
         if self.model["kind"] == "analytic":
             return [self.bells(first, second, third)] if third > 0 else []
-        number = int(self.arrays["dye"][b, g, r])
+        if self.model["kind"] == "film":
+            return self.film(self.arrays["dyes"][b, g, r], np.array([first, second]))
+        number = int(self.arrays["dyes"][b, g, r, 0])
         return self.dyes(number, first, second) if second > 0 else []
 
     def bells(self, peak_nm: float, shift_nm: float, concentration: float) -> Absorber:
@@ -139,6 +141,33 @@ class Reader:
         if self.model["mixing"] == "pooled":
             return [absorber(shares, concentration)]
         return [absorber(np.eye(2)[k], concentration * shares[k]) for k in range(2)]
+
+    def film(self, pair: np.ndarray, densities: np.ndarray) -> list[Absorber]:
+        """The dyes of a film: of what is absorbed, each has its share of the optical density."""
+        absorption, emission = np.moveaxis(self.arrays["dye_curves"][pair], 1, 0)
+        emission = emission / emission.sum(axis=1, keepdims=True)
+        means = emission @ NM
+
+        def absorbed(nm: np.ndarray, k: int) -> np.ndarray:
+            own = [
+                density * np.interp(nm, NM, curve, left=0, right=0)
+                for density, curve in zip(densities, absorption, strict=True)
+            ]
+            whole = own[0] + own[1]
+            share = np.divide(own[k], whole, out=np.zeros_like(whole), where=whole > 0)
+            return share * -np.expm1(-np.log(10) * whole)
+
+        return [
+            Absorber(
+                1.0,
+                self.quantum_yield(self.model["dyes"][pair[k]]),
+                means[k],
+                lambda nm, k=k: absorbed(nm, k),
+                lambda nm, k=k: np.interp(nm, NM, emission[k], left=0, right=0),
+            )
+            for k in range(2)
+            if densities[k] > 0
+        ]
 
     def quantum_yield(self, dye: dict[str, Any]) -> float:
         if self.model["quantum_yield"] != "measured":

@@ -106,6 +106,7 @@ def test_the_columns_of_stored_numbers_have_names(any_cube: upglow.Cube) -> None
     names = {
         "reflectance": [None, "concentration", None],
         "dyes": ["weight", "concentration", None],
+        "film": [None, None, None],
         "analytic": ["emission_peak_nm", "stokes_shift_nm", "concentration"],
     }
     for column, name in enumerate(["edge_nm", "level", "slope_per_nm"]):
@@ -195,7 +196,7 @@ def test_wrong_arguments_are_refused(cube, call, error, message) -> None:
 
 def test_materials_of_another_cube_give_nan(cube) -> None:
     materials = upglow.build(model=upglow.Dyes(set="wide14"), resolution=4).nodes
-    foreign = materials.dye >= 8
+    foreign = materials.dyes[..., 0] >= 8
     assert foreign.any()
     assert np.array_equal(np.isnan(cube.reflectance(materials, 500.0)), foreign)
 

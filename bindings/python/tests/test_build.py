@@ -6,6 +6,7 @@ import signal
 import threading
 import time
 import warnings
+from typing import Any
 
 import numpy as np
 import pytest
@@ -36,6 +37,40 @@ def test_the_header_has_the_options() -> None:
     fit = {"metric": "de76", "method": "exhaustive", "slope_max_per_nm": 0.02, "sweeps": 1}
     assert header["fit"].items() >= fit.items()
     assert upglow.build(resolution=2, slope_max_per_nm=None).header["fit"]["slope_max_per_nm"] is None
+
+
+def test_a_preset_is_recorded_and_other_arguments_override_it() -> None:
+    def recorded(**options: Any) -> tuple[Any, ...]:
+        header = upglow.build(resolution=2, **options).header
+        names = "preset", "slope_max_per_nm", "slope_under_dyes_per_nm", "relaxed"
+        return header["model"]["kind"], *(header["fit"][name] for name in names)
+
+    natural = recorded(preset="natural")
+    assert natural[:2] == ("film", "natural") and natural[2] > natural[3] and natural[4] is True
+    assert recorded() == natural
+    assert recorded(preset="konig2020") == ("dyes", "konig2020", 0.01, 0.01, False)
+    assert recorded(preset="jung2019") == ("analytic", "jung2019", 0.01, 0.01, False)
+    assert recorded(preset="jakob2019") == ("reflectance", "jakob2019", None, None, False)
+    assert recorded(preset="konig2020", slope_max_per_nm=0.02)[1:4] == (None, 0.02, 0.02)
+    assert recorded(preset="natural", slope_under_dyes_per_nm=0.01)[1:4] == (None, natural[2], 0.01)
+    assert recorded(preset="natural", relaxed=False)[4] is False
+    with pytest.raises(ValueError, match="unknown preset"):
+        upglow.build(preset="paint")
+
+
+def test_kinds_of_material_add_up(any_cube: upglow.Cube) -> None:
+    summary = any_cube.summary()
+    assert sum(summary.kinds.values()) == summary.nodes
+    assert summary.kinds["missed"] == summary.nodes - summary.exact
+
+
+def test_a_film_has_dyes_and_densities() -> None:
+    nodes = upglow.build(preset="natural", resolution=4).nodes
+    assert nodes.dyes.shape == (4, 4, 4, 2) and nodes.densities.shape == (4, 4, 4, 2)
+    assert np.all(nodes.densities[..., 0] >= nodes.densities[..., 1])
+    assert np.array_equal(nodes.dose, nodes.densities.sum(axis=-1)) and nodes.dose.max() > 0
+    with pytest.raises(AttributeError, match="have no concentration"):
+        _ = nodes.concentration
 
 
 def test_every_stage_reports_progress_to_its_end() -> None:
@@ -107,7 +142,7 @@ def test_nodes_are_what_fit_finds_for_gray(cube: upglow.Cube) -> None:
 
 def test_former_words_are_still_read() -> None:
     def content(**options) -> bytes:
-        return upglow.build(resolution=2, **options).to_bytes()
+        return upglow.build(preset="konig2020", resolution=2, **options).to_bytes()
 
     assert content(model=upglow.Dyes(set="seed8")) == content(model=upglow.Dyes(set="konig8"))
     for former, word in [("seed", "konig2020"), ("seed-features", "konig2020-features")]:
@@ -132,8 +167,15 @@ def test_unmeasured_yields_are_a_warning() -> None:
         ({"threads": 0}, "threads is 0, expected 1 to 1024"),
         ({"model": upglow.Dyes(mixing="x")}, 'unknown mixing "x", expected pooled or separate'),
         ({"model": upglow.Dyes(quantum_yield=2.0)}, "quantum yield 2, expected 0 to 1"),
+        ({"model": upglow.Film(quantum_yield=2.0)}, "quantum yield 2, expected 0 to 1"),
+        ({"model": upglow.Film(accounting="x")}, 'unknown accounting "x", expected energy or photon'),
+        ({"model": upglow.Film(set="x")}, 'unknown dye set "x", expected konig8, open8, wide14, wide8 or'),
+        (
+            {"model": upglow.Film(normalize=True)},
+            "normalize with the set 'konig8', expected a folder or a list",
+        ),
         ({"model": upglow.Dyes(optical_density=0)}, "optical density 0, expected > 0"),
-        ({"model": upglow.Dyes(set="x")}, 'unknown dye set "x", expected konig8, open8, wide14 or'),
+        ({"model": upglow.Dyes(set="x")}, 'unknown dye set "x", expected konig8, open8, wide14, wide8 or'),
         ({"model": upglow.Analytic(emission_fwhm_nm=5)}, "width 5 nm, expected 15 to 80 nm"),
     ],
 )

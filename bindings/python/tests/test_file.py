@@ -25,8 +25,8 @@ def test_numpy_alone_reads_what_nodes_returns(any_cube: upglow.Cube) -> None:
     assert header["resolution"] == any_cube.resolution
     assert np.array_equal(arrays["reflectance"], nodes.reflectance)
     assert np.array_equal(arrays["de2000"], nodes.de2000)
-    if any_cube.model == "dyes":
-        assert np.array_equal(arrays["dye"], nodes.dye)
+    if any_cube.model in ("dyes", "film"):
+        assert np.array_equal(arrays["dyes"], nodes.dyes)
     if any_cube.model != "reflectance":
         assert np.array_equal(arrays["fluorescence"], nodes.fluorescence)
     assert np.array_equal(arrays["illuminant"], any_cube.contract.illuminant.power)
@@ -77,7 +77,7 @@ def test_reradiation_is_what_the_format_says(
 def test_numpy_alone_finds_the_color_of_a_node() -> None:
     # The error of single precision; the sums are the same, over 5 nm.
     single = 1e-6
-    cube = upglow.build(resolution=4)
+    cube = upglow.build(preset="konig2020", resolution=4)
     reader = Reader(cube.to_bytes())
     with (REPOSITORY / "tables" / "cie_1931_2deg.csv").open() as file:
         lines = csv.reader(line for line in file if not line.startswith("#"))

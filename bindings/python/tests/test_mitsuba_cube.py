@@ -15,16 +15,17 @@ COUNT = 4000
 DRAWS = 200_000
 # Single precision, a sum of four materials: half a dozen roundings of a number up to 1.
 VALUE_TOL = 1e-6
-# Edge (nm), level and slope (1/nm) for which single precision overflows or cancels all digits.
+# Edge (nm), level and slope (1/nm) for which single precision overflows or cancels all digits, up to the
+# greatest that a file may hold.
 STRANGE = [
     (-3e5, 1.0, 1e-6),
     (1.5e5, 1.0, 1e-6),
     (2e6, 1.0, 1e-6),
-    (550.0, 1e30, 0.01),
-    (550.0, -1e30, -0.01),
-    (3e38, 0.5, 0.01),
-    (550.0, 0.5, 1e30),
-    (-3e38, -1e30, 1e30),
+    (550.0, 1e10, 0.01),
+    (550.0, -1e10, -0.01),
+    (9.9e17, 0.5, 0.01),
+    (550.0, 0.5, 1e3),
+    (-9.9e17, -1e10, 1e3),
 ]
 # Single precision of numbers near 10 under the root.
 STRANGE_TOL = 1e-5

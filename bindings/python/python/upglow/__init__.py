@@ -6,7 +6,7 @@ answers for arrays of colors: reflectance, re-radiation, color under any light, 
     >>> import upglow
     >>> cube = upglow.build(upglow.Contract(space="acescg"), resolution=9)
     >>> cube.reflectance([0.9, 0.1, 0.8], [450.0, 550.0, 650.0]).round(2).tolist()
-    [0.75, 0.11, 0.59]
+    [0.89, 0.06, 0.96]
     >>> cube.reradiation([0.9, 0.1, 0.8], 550.0, [560.0, 600.0, 640.0]).shape
     (3,)
 
@@ -31,7 +31,7 @@ from ._contract import Contract
 from ._cube import Cube, CubeCheck, CubeSummary, Samples, build
 from ._illuminant import Illuminant
 from ._materials import Corners, Materials
-from ._models import Analytic, Dye, Dyes, Reflectance
+from ._models import Analytic, Dye, Dyes, Film, Reflectance
 from ._observer import Observer
 from ._standing import Kind, Standing, standing
 from ._upglow import __version__
@@ -50,6 +50,7 @@ __all__ = [
     "CubeSummary",
     "Dye",
     "Dyes",
+    "Film",
     "Illuminant",
     "Kind",
     "Materials",

@@ -7,7 +7,7 @@ import os
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -29,7 +29,7 @@ from ._arrays import (
 from ._contract import Contract
 from ._illuminant import Illuminant
 from ._materials import Corners, Materials
-from ._models import Dyes, Model
+from ._models import Model
 from ._progress import Report, reporting
 from ._standing import standing
 from ._verify import Check, VerifyReport
@@ -88,6 +88,9 @@ class CubeSummary:
     """Greatest CIEDE2000 of a node."""
     fluorescent: int
     """Nodes whose material fluoresces."""
+    kinds: dict[str, int]
+    """Nodes by kind of material: ``reflectance`` alone, ``dyed`` (both within the slope limits),
+    ``steep`` (steeper than these), ``missed`` (more than 0.01 CIEDE2000 from their color)."""
 
 
 def build(
@@ -95,9 +98,12 @@ def build(
     *,
     model: Model | None = None,
     resolution: int = 32,
-    slope_max_per_nm: float | None = 0.01,
-    metric: str = "de2000",
-    method: str = "search",
+    preset: str = "natural",
+    slope_max_per_nm: float | None | Literal["preset"] = "preset",
+    slope_under_dyes_per_nm: float | None | Literal["preset"] = "preset",
+    relaxed: bool | None = None,
+    metric: str | None = None,
+    method: str | None = None,
     sweeps: int | None = None,
     threads: Threads = None,
     progress: bool | Report = False,
@@ -109,15 +115,26 @@ def build(
     contract
         What RGB means; ACEScg under D65 by default.
     model
-        `Dyes` (default), `Analytic` or `Reflectance`.
+        `Dyes`, `Film`, `Analytic` or `Reflectance`; that of the preset by default.
     resolution
         Nodes along each axis, 2 to 256.
+    preset
+        Model and options by one word, which the other arguments override: ``natural``,
+        ``konig2020``, ``jung2019`` or ``jakob2019``. The first is films of dyes that conserve
+        photons, over reflectances no steeper than those of measured surfaces; the others are the
+        models of these papers.
     slope_max_per_nm
-        Greatest slope of any reflectance, 0.0001 to 0.2 per nm, or ``None`` for 0.2.
+        Greatest slope of a reflectance without fluorescence, 0.0001 to 0.2 per nm, or ``None`` for
+        0.2. A color that such a reflectance matches gets no dye.
+    slope_under_dyes_per_nm
+        Greatest slope of a reflectance under fluorescence, at most ``slope_max_per_nm``, which it
+        follows where the preset has one limit for both.
+    relaxed
+        Whether a color that no material within the limits matches gets a steeper reflectance.
     metric
-        Color difference to minimize: ``de2000``, ``de76`` or ``rgb``.
+        Color difference to minimize: ``de2000`` (default), ``de76`` or ``rgb``.
     method
-        ``search`` (ours), ``exhaustive`` (a slower reference for it), ``konig2020`` or
+        ``search`` (ours, the default), ``exhaustive`` (a slower reference for it), ``konig2020`` or
         ``konig2020-features``.
     sweeps
         How often a node that misses its color tries its neighbors' materials; by default 2, and 4
@@ -140,14 +157,24 @@ def build(
     >>> cube.summary().nodes
     125
     """
-    native = (model or Dyes())._native()
+    native = _upglow.Model.of_preset(preset) if model is None else model._native()
     if getattr(model, "quantum_yield", None) == "measured" and native.without_published_yield:
         names = ", ".join(native.without_published_yield)
         warnings.warn(f"no published quantum yield, taken as 1: {names}", stacklevel=2)
-    options = (metric, slope_max_per_nm, method, sweeps)
+    slope_max, slope_under_dyes = map(_limit, (slope_max_per_nm, slope_under_dyes_per_nm))
+    options = (preset, metric, slope_max, slope_under_dyes, relaxed, method, sweeps)
     agreed = (contract or Contract())._native
     with reporting(progress) as report:
         return Cube._of(_upglow.build(agreed, native, resolution, options, threads, report))
+
+
+def _limit(slope_per_nm: float | str | None) -> tuple[float | None] | None:
+    """A slope limit in a tuple, or ``None`` for that of the preset."""
+    if isinstance(slope_per_nm, str):
+        if slope_per_nm != "preset":
+            raise ValueError(f"slope limit {slope_per_nm!r}, expected a number, None or 'preset'")
+        return None
+    return (slope_per_nm,)
 
 
 class Cube:
@@ -228,7 +255,7 @@ class Cube:
 
     @property
     def model(self) -> str:
-        """``reflectance``, ``dyes`` or ``analytic``."""
+        """``reflectance``, ``dyes``, ``film`` or ``analytic``."""
         kind: str = self.header["model"]["kind"]
         return kind
 
@@ -256,7 +283,9 @@ class Cube:
 
     def summary(self) -> CubeSummary:
         """How well the nodes match their colors, from the differences that the cube stores."""
-        return CubeSummary(*self._native.summary())
+        found = self._native.summary()
+        names = "reflectance", "dyed", "steep", "missed"
+        return CubeSummary(*found[:8], dict(zip(names, found[8], strict=True)))
 
     def __repr__(self) -> str:
         n = self.resolution

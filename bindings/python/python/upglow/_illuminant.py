@@ -15,7 +15,8 @@ class Illuminant(NamedTable):
     Parameters
     ----------
     source
-        A built-in name (``D65``, ``D60``, ``D55``, ``D50``, ``A``, ``E``; any case), the path of a
+        A built-in name (``D65``, ``D60``, ``D55``, ``D50``, ``A``, ``E``, ``FL2``, ``FL11``,
+        ``HP1``, ``LED-B3``; any case), the path of a
         CSV file with the header ``wavelength_nm,power``, a pair ``(wavelengths_nm, power)`` of
         arrays of shape (n,), or a ``colour.SpectralDistribution``. Sampled light covers 300 to 830
         nm in steps of at most 10 nm; powers are 0 or more. It is linear between samples, so lines need

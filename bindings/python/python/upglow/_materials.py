@@ -23,33 +23,34 @@ class Materials:
     ----------
     reflectance
         `edge_nm`, `level` and `slope_per_nm`; float32 (..., 3).
-    dye
-        Number of the first dye in the ring, from 0; uint8 (...).
+    dyes
+        Numbers of dyes in the set, from 0; uint8 (..., 2). ``dyes``: of the first in the ring, 0.
+        ``film``: of both, the denser first; the same twice for a single dye.
     fluorescence
-        ``dyes``: `weight`, `concentration`, 0. ``analytic``: `emission_peak_nm`, `stokes_shift_nm`,
+        ``dyes``: `weight`, `concentration`, 0. ``film``: both `densities`, 0. ``analytic``: `emission_peak_nm`, `stokes_shift_nm`,
         `concentration`. Zeros for a material that does not fluoresce; float32 (..., 3).
     de2000
         CIEDE2000 of each material against its color, sums over 5 nm; float32 (...).
     model
-        ``reflectance``, ``dyes`` or ``analytic``.
+        ``reflectance``, ``dyes``, ``film`` or ``analytic``.
     """
 
     reflectance: NDArray[np.float32]
-    dye: NDArray[np.uint8]
+    dyes: NDArray[np.uint8]
     fluorescence: NDArray[np.float32]
     de2000: NDArray[np.float32]
     model: str
 
     @classmethod
     def _of(cls, arrays: tuple[Any, Any, Any, Any], shape: tuple[int, ...], model: str) -> Materials:
-        names = "reflectance", "dye", "fluorescence", "de2000"
+        names = "reflectance", "dyes", "fluorescence", "de2000"
         flat = cls(**dict(zip(names, arrays, strict=True)), model=model)
-        return flat._each(lambda a: a.reshape(shape), lambda a: a.reshape(*shape, 3))
+        return flat._each(lambda a: a.reshape(shape), lambda a: a.reshape(*shape, a.shape[-1]))
 
     @property
     def shape(self) -> tuple[int, ...]:
         """Shape of the array of materials."""
-        return self.dye.shape
+        return self.de2000.shape
 
     @property
     def edge_nm(self) -> NDArray[np.float32]:
@@ -72,6 +73,12 @@ class Materials:
         return self._fluorescence("weight", dyes=0)
 
     @property
+    def densities(self) -> NDArray[np.float32]:
+        """Model ``film``: optical density of each of the two dyes, 0 to 6; shape (..., 2)."""
+        self._fluorescence("optical densities", film=0)
+        return self.fluorescence[..., :2]
+
+    @property
     def emission_peak_nm(self) -> NDArray[np.float32]:
         """Model ``analytic``: wavelength of the emission's peak, nm; shape (...)."""
         return self._fluorescence("emission peak", analytic=0)
@@ -85,6 +92,14 @@ class Materials:
     def concentration(self) -> NDArray[np.float32]:
         """Concentration c of what fluoresces, 0 to 1; shape (...)."""
         return self._fluorescence("concentration", reflectance=1, dyes=1, analytic=2)
+
+    @property
+    def dose(self) -> NDArray[np.float32]:
+        """How much fluoresces: the sum of `densities`, or the `concentration`; shape (...)."""
+        if self.model == "film":
+            dose: NDArray[np.float32] = self.densities.sum(axis=-1)
+            return dose
+        return self.concentration
 
     def _fluorescence(self, name: str, **columns: int) -> NDArray[np.float32]:
         """The column of this number; ``AttributeError`` for models not in ``columns``."""
@@ -102,23 +117,23 @@ class Materials:
         """The same materials, broadcast to a larger shape by numpy's rules."""
         return self._each(
             lambda numbers: np.broadcast_to(numbers, shape),
-            lambda rows: np.broadcast_to(rows, (*shape, 3)),
+            lambda rows: np.broadcast_to(rows, (*shape, rows.shape[-1])),
         )
 
-    def _each(self, of_number: _Change, of_three: _Change) -> Materials:
-        """A copy with a change applied to arrays of shape (...), and one to those of (..., 3)."""
+    def _each(self, of_number: _Change, of_rows: _Change) -> Materials:
+        """A copy with a change applied to the array of shape (...), and one to those of (..., n)."""
         return replace(
             self,
-            reflectance=of_three(self.reflectance),
-            dye=of_number(self.dye),
-            fluorescence=of_three(self.fluorescence),
+            reflectance=of_rows(self.reflectance),
+            dyes=of_rows(self.dyes),
+            fluorescence=of_rows(self.fluorescence),
             de2000=of_number(self.de2000),
         )
 
     def _rows(self) -> tuple[NDArray[np.float32], NDArray[np.uint8], NDArray[np.float32]]:
         return (
             np.ascontiguousarray(self.reflectance, dtype=np.float32).reshape(-1, 3),
-            np.ascontiguousarray(self.dye, dtype=np.uint8).reshape(-1),
+            np.ascontiguousarray(self.dyes, dtype=np.uint8).reshape(-1, 2),
             np.ascontiguousarray(self.fluorescence, dtype=np.float32).reshape(-1, 3),
         )
 

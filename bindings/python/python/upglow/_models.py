@@ -55,7 +55,8 @@ class Dyes:
     Parameters
     ----------
     set
-        A built-in set (``konig8``, ``open8``, ``wide14``), a folder of CSV files with the header
+        A built-in set (``wide8``, ``konig8``, ``open8``,
+            ``wide14``), a folder of CSV files with the header
         ``wavelength_nm,absorption,emission``, or a list of `Dye` in ring order.
     accounting
         What re-radiation conserves at a quantum yield of 1: ``energy`` or ``photon``.
@@ -89,19 +90,55 @@ class Dyes:
         return self._native_set().dyes
 
     def _native_set(self) -> _upglow.DyeSet:
-        if not isinstance(self.set, (str, os.PathLike)):
-            dyes = [dye._samples() for dye in self.set]
-            return _upglow.DyeSet.from_samples("custom", dyes, self.normalize)
-        word = os.fspath(self.set)
-        if word in _upglow.DyeSet.names() or not is_path(word):
-            if self.normalize:
-                raise ValueError(f"normalize with the set {word!r}, expected a folder or a list")
-            return _upglow.DyeSet.named(word)
-        return _upglow.DyeSet.from_folder(word, self.normalize)
+        return _native_set(self.set, self.normalize)
 
     def _native(self) -> _upglow.Model:
         rules = self.accounting, self.mixing, self.quantum_yield, self.optical_density
         return _upglow.Model.dyes(self._native_set(), *rules)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Film:
+    """Fluorescence by any two dyes of a set in a film, each at an optical density of its own, 0 to 6.
+
+    Parameters
+    ----------
+    set, normalize
+        As in `Dyes`, in any order.
+    accounting
+        What re-radiation conserves at a quantum yield of 1: ``energy`` or ``photon``.
+    quantum_yield
+        Share of the absorbed light that is re-emitted, 0 to 1, or ``"measured"``.
+    """
+
+    set: str | os.PathLike[str] | Sequence[Dye] = "konig8"
+    accounting: str = "photon"
+    quantum_yield: float | str = 1.0
+    normalize: bool = False
+
+    def names(self) -> list[str]:
+        """The dyes' names in the order of the set."""
+        return self._native_set().dyes
+
+    def _native_set(self) -> _upglow.DyeSet:
+        return _native_set(self.set, self.normalize)
+
+    def _native(self) -> _upglow.Model:
+        return _upglow.Model.film(self._native_set(), self.accounting, self.quantum_yield)
+
+
+def _native_set(
+    dyes: str | os.PathLike[str] | Sequence[Dye], normalize: bool
+) -> _upglow.DyeSet:
+    if not isinstance(dyes, (str, os.PathLike)):
+        sampled = [dye._samples() for dye in dyes]
+        return _upglow.DyeSet.from_samples("custom", sampled, normalize)
+    word = os.fspath(dyes)
+    if word in _upglow.DyeSet.names() or not is_path(word):
+        if normalize:
+            raise ValueError(f"normalize with the set {word!r}, expected a folder or a list")
+        return _upglow.DyeSet.named(word)
+    return _upglow.DyeSet.from_folder(word, normalize)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -137,4 +174,4 @@ class Reflectance:
         return _upglow.Model.reflectance()
 
 
-Model = Dyes | Analytic | Reflectance
+Model = Dyes | Film | Analytic | Reflectance

@@ -39,6 +39,7 @@ __version__: Final[str]
 
 _Doubles = NDArray[np.float64]
 _Singles = NDArray[np.float32]
+_Limit = tuple[float | None]
 _Stored = tuple[_Singles, NDArray[np.uint8], _Singles]
 _Subjects = _Singles | _Doubles | _Stored
 _Materials = tuple[_Singles, NDArray[np.uint8], _Singles, _Singles]
@@ -132,6 +133,10 @@ class Model:
         quantum_yield: float | str,
         optical_density: float | None,
     ) -> Model: ...
+    @staticmethod
+    def of_preset(preset: str) -> Model: ...
+    @staticmethod
+    def film(set: DyeSet, accounting: str, quantum_yield: float | str) -> Model: ...
     name: Final[str]
     without_published_yield: Final[list[str]]
 
@@ -151,7 +156,8 @@ class Cube:
     def packed_nodes(self) -> _Singles: ...
     def dye_curves(self) -> _Doubles: ...
     def dye_numbers(self) -> _Doubles: ...
-    def summary(self) -> tuple[int, int, int, int, float, float, float, int]: ...
+    def film_proposals(self) -> tuple[list[float], _Doubles] | None: ...
+    def summary(self) -> tuple[int, int, int, int, float, float, float, int, list[int]]: ...
 
 @final
 class Colors:
@@ -163,7 +169,15 @@ def build(
     contract: Contract,
     model: Model,
     resolution: int,
-    options: tuple[str, float | None, str, int | None],
+    options: tuple[
+        str,
+        str | None,
+        _Limit | None,
+        _Limit | None,
+        bool | None,
+        str | None,
+        int | None,
+    ],
     threads: _Threads,
     report: _Report | None,
 ) -> Cube: ...

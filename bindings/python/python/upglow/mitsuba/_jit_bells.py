@@ -32,7 +32,8 @@ class Bells:
         return corner.numbers.y * _PEAK_SCALE * bell(u)
 
     def reradiation(self, corner: Corner, in_nm: Any, out_nm: Any, active: Any) -> tuple[Any, Any]:
-        """Re-radiation of a corner, 1/nm; and the same if no energy were lost to longer waves."""
+        """Re-radiation of a corner, 1/nm; and the same if no energy were lost to longer waves, in
+        proportion to which incident wavelengths are drawn."""
         absorbed = self._quantum_yield * self.absorbed(corner, in_nm, active)
         lossless = absorbed * self._emission(corner, out_nm)
         if not self._is_photon:
@@ -40,8 +41,8 @@ class Bells:
         # Corners that do not fluoresce have a peak of 0, by which nothing may be divided.
         return dr.minimum(in_nm / dr.maximum(corner.numbers.x, 1), 1) * lossless, lossless
 
-    def lossless_emission(self, corner: Corner, out_nm: Any, active: Any) -> Any:
-        """Integral of the lossless re-radiation over incident wavelengths."""
+    def drawn_total(self, corner: Corner, out_nm: Any, active: Any) -> Any:
+        """Integral over incident wavelengths of what they are drawn in proportion to."""
         # Slot z of the numbers is not it: it has the integral after photon losses.
         absorbed_nm = corner.numbers.y * _PEAK_SCALE * self._absorption_step_nm
         return self._quantum_yield * absorbed_nm * self._emission(corner, out_nm)

@@ -13,6 +13,7 @@ from .._cube import Cube
 from ._host import dr, mi, spectrum_of
 from ._jit_bells import Bells
 from ._jit_dyes import Dyes
+from ._jit_film import Film
 from ._jit_guide import ByAbsorption, ByLampsToo, guide
 from ._jit_lookup import Corner, Lattice
 from ._lamps import Lamps
@@ -26,9 +27,11 @@ class JitCube:
 
     def __init__(self, cube: Cube) -> None:
         model, packed = cube.header["model"], cube._native.packed_nodes()
-        self._dyes: Dyes | Bells | None = None
+        self._dyes: Dyes | Film | Bells | None = None
         if model["kind"] == "dyes":
             self._dyes = Dyes.of(cube)
+        elif model["kind"] == "film":
+            self._dyes = Film.of(cube)
         elif model["kind"] == "analytic":
             self._dyes = Bells(model)
         self._lattice = Lattice(cube.resolution, packed, self._dyes is not None)

@@ -14,6 +14,7 @@ from typing import Any
 from ._host import dr, mi
 from ._jit_bells import Bells
 from ._jit_dyes import Dyes
+from ._jit_film import Film
 from ._jit_lookup import Corner
 from ._lamps import Lamps
 
@@ -21,26 +22,26 @@ _BELOW_ONE = 0.99999994
 """The greatest single-precision number below 1: a choice of 1 would select no corner."""
 
 
-def guide(dyes: Dyes | Bells, lamps: Lamps | None) -> ByAbsorption | ByLampsToo:
+def guide(dyes: Dyes | Film | Bells, lamps: Lamps | None) -> ByAbsorption | ByLampsToo:
     """The strategy of draws for a cube's dyes, under the lamps of a scene or under any light."""
     if lamps is None:
         return ByAbsorption(dyes)
-    if isinstance(dyes, Dyes):
+    if not isinstance(dyes, Bells):
         return ByAbsorption(dyes.lit_by(lamps.spread_power()))
     return ByLampsToo(ByAbsorption(dyes), lamps)
 
 
 @dataclass
 class ByAbsorption:
-    """Draws in proportion to the absorption."""
+    """Draws in proportion to the absorption; in a film, to what each dye by itself would return."""
 
-    dyes: Dyes | Bells
+    dyes: Dyes | Film | Bells
 
     def draw(
         self, corners: list[Corner], out_nm: Any, choice: Any, u: Any, active: Any
     ) -> tuple[Any, Any]:
         """An incident wavelength (nm) and its density (1/nm), which is 0 where nothing is drawn."""
-        parts = [c.weight * self.dyes.lossless_emission(c, out_nm, active) for c in corners]
+        parts = [c.weight * self.dyes.drawn_total(c, out_nm, active) for c in corners]
         corner, rest = _chosen(corners, parts, choice)
         nm = self.dyes.draw(corner, out_nm, rest, u, active)
         return nm, self.pdf(corners, nm, out_nm, active)
@@ -49,7 +50,7 @@ class ByAbsorption:
         """The density of a draw, 1/nm."""
         total, whole = mi.Float(0), mi.Float(0)
         for corner in corners:
-            total += corner.weight * self.dyes.lossless_emission(corner, out_nm, active)
+            total += corner.weight * self.dyes.drawn_total(corner, out_nm, active)
             whole += corner.weight * self.dyes.reradiation(corner, nm, out_nm, active)[1]
         return dr.select(total > 0, whole / total, 0)
 
