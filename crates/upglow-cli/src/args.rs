@@ -13,9 +13,12 @@ use upglow_color::{RgbSpace, choices};
 use upglow_shader::Language;
 use upglow_terminal::{Console, Threads, count, in_range, word};
 
-pub(crate) use build::{BuildArgs, ContractArgs, ModelArgs, ModelName};
+pub(crate) use build::{
+    BuildArgs, ContractArgs, FitArgs, ModelArgs, ModelName, SlopeLimits, limit_text,
+};
 pub(crate) use pictures::{BakeArgs, BakeForm, CheckArgs, ExamplesArgs, LintArgs, ReadArgs};
-use values::rgb_space;
+pub(crate) use values::SlopeLimit;
+use values::{rgb_space, slope_limit};
 
 /// Turns RGB colors into physically valid spectral materials, with fluorescence where no
 /// reflectance can match the color.
@@ -75,7 +78,7 @@ pub(crate) struct InspectArgs {
     /// `upglow build`
     #[arg(long, value_parser = rgb_space)]
     pub(crate) space: Option<RgbSpace>,
-    /// Light of a coefficient table: D65, D60, D55, D50, A, E, or a CSV file with the header
+    /// Light of a coefficient table: D65, D60, D55, D50, A, E, FL2, FL11, HP1, LED-B3, or a CSV file with the header
     /// `wavelength_nm,power` [default: D65]
     #[arg(long, value_name = "NAME|FILE")]
     pub(crate) illuminant: Option<String>,
@@ -139,6 +142,10 @@ pub(crate) struct ExportArgs {
     /// Nodes along each axis of a coeff table, 2 to 128 [default: 64]
     #[arg(long, value_name = "N", value_parser = in_range(CoefficientTable::RESOLUTIONS))]
     pub(crate) resolution: Option<usize>,
+    /// Greatest slope of the reflectances of a coeff table, 0.0001 to 0.2 per nm, or none for 0.2
+    /// [default: none, as in Jakob and Hanika 2019]
+    #[arg(long, value_name = "SLOPE|none", value_parser = slope_limit)]
+    pub(crate) slope_max_per_nm: Option<SlopeLimit>,
     #[command(flatten)]
     pub(crate) threads: Threads,
 }

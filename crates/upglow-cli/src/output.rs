@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Display};
 
-use upglow_fit::CubeSummary;
+use upglow_fit::{CubeSummary, MaterialKind};
 use upglow_terminal::size;
 
 /// Prints a warning on standard error.
@@ -33,16 +33,20 @@ impl Lines {
     /// Adds a line per number of a summary.
     pub(crate) fn add_summary(&mut self, summary: &CubeSummary) -> &mut Self {
         let width = summary.nodes.to_string().len();
-        let share = |count: usize| {
+        let share = |count: u64| {
             let percent = 100.0 * count as f64 / summary.nodes.max(1) as f64;
             format!("{count:width$}  {percent:6.2} %")
         };
-        let exact = format!("{}  ΔE00 ≤ {}", share(summary.exact), CubeSummary::EXACT_DE2000);
-        self.add("nodes", summary.nodes)
-            .add("exact", exact)
-            .add("within 1", format_args!("{}  ΔE00 ≤ 1", share(summary.within_1)))
-            .add("within 2", format_args!("{}  ΔE00 ≤ 2", share(summary.within_2)))
-            .add("fluorescent", share(summary.fluorescent))
+        self.add("nodes", summary.nodes);
+        for (kind, count) in summary.kinds.each() {
+            let remark = match kind {
+                MaterialKind::Missed => format!("  ΔE00 > {}", CubeSummary::EXACT_DE2000),
+                _ => String::new(),
+            };
+            self.add(kind.label(), share(count) + &remark);
+        }
+        self.add("within 1", format_args!("{}  ΔE00 ≤ 1", share(summary.within_1 as u64)))
+            .add("within 2", format_args!("{}  ΔE00 ≤ 2", share(summary.within_2 as u64)))
             .add("mean ΔE00", format_args!("{:.3}", summary.mean_de2000))
             .add("p95 ΔE00", format_args!("{:.3}", summary.p95_de2000))
             .add("max ΔE00", format_args!("{:.3}", summary.max_de2000))

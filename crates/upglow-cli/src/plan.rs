@@ -4,13 +4,14 @@ use std::error::Error;
 use std::path::Path;
 
 use upglow::{
-    AnalyticModel, DyeModel, DyeOptions, DyeSet, DyeSetError, Model, ModelError, QuantumYield,
+    AnalyticModel, DyeModel, DyeOptions, DyeSet, DyeSetError, FilmModel, Model, ModelError,
+    QuantumYield,
 };
 use upglow_color::{Choice, Contract, Illuminant, LinearRgb, Observer};
-use upglow_fit::{FitOptions, Fitter};
+use upglow_fit::{FitOptions, FitOptionsError, Fitter, GivenOptions, Preset};
 use upglow_terminal::Failure;
 
-use crate::args::{BuildArgs, ColorArgs, ContractArgs, ModelArgs, ModelName};
+use crate::args::{BuildArgs, ColorArgs, ContractArgs, FitArgs, ModelArgs, ModelName, SlopeLimits};
 use crate::files;
 
 /// A cube to build.
@@ -25,18 +26,39 @@ impl BuildPlan {
     /// Checks everything that can be checked before the work starts; the output last.
     pub(crate) fn new(args: &BuildArgs) -> Result<Self, Failure> {
         let contract = contract(&args.contract)?;
-        let model = model(&args.model)?;
-        let options = FitOptions {
-            metric: args.fit.metric,
-            slope_max_per_nm: args.fit.slope_max_per_nm,
-            sweeps: args.fit.sweeps.unwrap_or(args.fit.method.default_sweeps()),
-            method: args.fit.method,
-        };
-        Fitter::new(&contract, &model, options)
-            .map_err(|error| Failure::option("--slope-max-per-nm", error))?;
+        let model = model(args)?;
+        let options = options(args.model.preset, &args.fit);
+        options.check(&model).map_err(|error| options_failure(error, &options))?;
         files::check_output(&args.output)?;
         Ok(Self { contract, model, options })
     }
+}
+
+/// The options of the preset, with those that were given in their place.
+fn options(preset: Preset, args: &FitArgs) -> FitOptions {
+    preset.options().with(GivenOptions {
+        metric: args.metric,
+        slope_max_per_nm: args.slope_max_per_nm,
+        slope_under_dyes_per_nm: args.slope_under_dyes_per_nm,
+        relaxed: args.slope_limits.map(|kind| kind == SlopeLimits::Relaxed),
+        sweeps: args.sweeps,
+        method: args.method,
+    })
+}
+
+/// Names the option because of which nothing can be fitted.
+pub(crate) fn options_failure(error: FitOptionsError, options: &FitOptions) -> Failure {
+    // By its bits, because NaN equals nothing.
+    let is_alone = |found: f64| options.slope_max_per_nm.map(f64::to_bits) == Some(found.to_bits());
+    let option = match error {
+        FitOptionsError::Slope { found } if is_alone(found) => "--slope-max-per-nm",
+        FitOptionsError::Slope { .. } | FitOptionsError::UnderDyes { .. } => {
+            "--slope-under-dyes-per-nm"
+        }
+        FitOptionsError::PaperModel { .. } | FitOptionsError::PaperLimits { .. } => "--method",
+        _ => "build",
+    };
+    Failure::option(option, error)
 }
 
 fn contract(args: &ContractArgs) -> Result<Contract, Failure> {
@@ -104,39 +126,67 @@ pub(crate) fn refuse_ignored<T: Choice + PartialEq>(
     Err(Failure::option(option, message))
 }
 
-fn model(args: &ModelArgs) -> Result<Model, Failure> {
-    use ModelName::{Analytic, Dyes};
-    let options: [(&str, bool, &[ModelName]); 8] = [
-        ("--dyes", args.dyes.is_some(), &[Dyes]),
-        ("--normalize-dyes", args.normalize_dyes, &[Dyes]),
+fn model(args: &BuildArgs) -> Result<Model, Failure> {
+    use ModelName::{Analytic, Dyes, Film};
+    let BuildArgs { model: args, fit, .. } = args;
+    let preset = args.preset.model();
+    let name = args.name.unwrap_or(ModelName::from(&preset));
+    let under_dyes = fit.slope_under_dyes_per_nm.is_some();
+    let options: [(&str, bool, &[ModelName]); 9] = [
+        ("--dyes", args.dyes.is_some(), &[Film, Dyes]),
+        ("--normalize-dyes", args.normalize_dyes, &[Film, Dyes]),
         ("--mixing", args.mixing.is_some(), &[Dyes]),
         ("--optical-density", args.optical_density.is_some(), &[Dyes]),
-        ("--accounting", args.accounting.is_some(), &[Dyes, Analytic]),
-        ("--quantum-yield", args.quantum_yield.is_some(), &[Dyes, Analytic]),
+        ("--accounting", args.accounting.is_some(), &[Film, Dyes, Analytic]),
+        ("--quantum-yield", args.quantum_yield.is_some(), &[Film, Dyes, Analytic]),
+        ("--slope-under-dyes-per-nm", under_dyes, &[Film, Dyes, Analytic]),
         ("--absorption-fwhm-nm", args.absorption_fwhm_nm.is_some(), &[Analytic]),
         ("--emission-fwhm-nm", args.emission_fwhm_nm.is_some(), &[Analytic]),
     ];
-    refuse_ignored("--model", args.name, &options)?;
-    match args.name {
+    refuse_ignored("--model", name, &options)?;
+    match name {
         ModelName::Reflectance => Ok(Model::Reflectance),
-        ModelName::Dyes => dye_model(args).map(Model::Dyes),
-        ModelName::Analytic => analytic_model(args).map(Model::Analytic),
+        ModelName::Film => film_model(args, &preset).map(Model::Film),
+        ModelName::Dyes => dye_model(args, &preset).map(Model::Dyes),
+        ModelName::Analytic => analytic_model(args, &preset).map(Model::Analytic),
     }
 }
 
-fn dye_model(args: &ModelArgs) -> Result<DyeModel, Failure> {
-    let set = dye_set(args.dyes.as_deref().unwrap_or("konig8"), args.normalize_dyes)?;
-    let defaults = DyeOptions::default();
-    let options = DyeOptions {
-        accounting: args.accounting.unwrap_or(defaults.accounting),
-        mixing: args.mixing.unwrap_or(defaults.mixing),
-        quantum_yield: args.quantum_yield.unwrap_or(defaults.quantum_yield),
-        optical_density: args.optical_density,
-    };
-    DyeModel::new(set, options).map_err(model_failure)
+fn film_model(args: &ModelArgs, preset: &Model) -> Result<FilmModel, Failure> {
+    let DyeOptions { accounting, quantum_yield, .. } = rules(args, preset);
+    FilmModel::new(dye_set(args, preset)?, accounting, quantum_yield).map_err(model_failure)
 }
 
-fn dye_set(text: &str, normalize: bool) -> Result<DyeSet, Failure> {
+fn dye_model(args: &ModelArgs, preset: &Model) -> Result<DyeModel, Failure> {
+    let set = dye_set(args, preset)?;
+    DyeModel::new(set, rules(args, preset)).map_err(model_failure)
+}
+
+/// The rules of re-emission: those that were given, or else those of the preset.
+fn rules(args: &ModelArgs, preset: &Model) -> DyeOptions {
+    let ring = match preset {
+        Model::Dyes(ring) => ring.options(),
+        _ => DyeOptions::default(),
+    };
+    let accounting = args.accounting.or(preset.accounting());
+    let quantum_yield = args.quantum_yield.or(preset.quantum_yield());
+    DyeOptions {
+        accounting: accounting.unwrap_or(ring.accounting),
+        mixing: args.mixing.unwrap_or(ring.mixing),
+        quantum_yield: quantum_yield.unwrap_or(ring.quantum_yield),
+        optical_density: args.optical_density.or(ring.optical_density),
+    }
+}
+
+/// The dyes that were given, or else those of the preset.
+fn dye_set(args: &ModelArgs, preset: &Model) -> Result<DyeSet, Failure> {
+    match (&args.dyes, preset.dyes()) {
+        (None, Some(dyes)) if !args.normalize_dyes => Ok(dyes.set().clone()),
+        (dyes, _) => named_or_folder(dyes.as_deref().unwrap_or("konig8"), args.normalize_dyes),
+    }
+}
+
+fn named_or_folder(text: &str, normalize: bool) -> Result<DyeSet, Failure> {
     let path = Path::new(text);
     match DyeSet::named(text) {
         Err(DyeSetError::Unknown { .. }) if is_path(path) => {
@@ -167,12 +217,15 @@ fn folder_failure(folder: &Path, error: DyeSetError) -> Failure {
     }
 }
 
-fn analytic_model(args: &ModelArgs) -> Result<AnalyticModel, Failure> {
-    let defaults = AnalyticModel::default();
-    let quantum_yield = match args.quantum_yield {
-        None => defaults.quantum_yield(),
-        Some(QuantumYield::Fixed(quantum_yield)) => quantum_yield,
-        Some(QuantumYield::Measured) => {
+fn analytic_model(args: &ModelArgs, preset: &Model) -> Result<AnalyticModel, Failure> {
+    let defaults = match preset {
+        Model::Analytic(bells) => *bells,
+        _ => AnalyticModel::default(),
+    };
+    let DyeOptions { accounting, quantum_yield, .. } = rules(args, preset);
+    let quantum_yield = match quantum_yield {
+        QuantumYield::Fixed(quantum_yield) => quantum_yield,
+        QuantumYield::Measured => {
             let message = "measured with --model analytic, expected a number from 0 to 1";
             return Err(Failure::option("--quantum-yield", message));
         }
@@ -180,7 +233,6 @@ fn analytic_model(args: &ModelArgs) -> Result<AnalyticModel, Failure> {
     // One width at a time, so that the message names the option.
     let absorption_fwhm_nm = args.absorption_fwhm_nm.unwrap_or(defaults.absorption_fwhm_nm());
     let emission_fwhm_nm = args.emission_fwhm_nm.unwrap_or(defaults.emission_fwhm_nm());
-    let accounting = args.accounting.unwrap_or(defaults.accounting());
     let new = |absorption_fwhm_nm, emission_fwhm_nm| {
         AnalyticModel::new(absorption_fwhm_nm, emission_fwhm_nm, accounting, quantum_yield)
     };

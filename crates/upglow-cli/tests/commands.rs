@@ -10,7 +10,7 @@ use upglow_color::Contract;
 
 fn folder_with_cube(options: &str) -> Folder {
     let folder = Folder::new();
-    folder.done(&format!("build --resolution 4 -o cube {options}"));
+    folder.done(&format!("build --preset konig2020 --resolution 4 -o cube {options}"));
     folder
 }
 
@@ -21,16 +21,22 @@ fn number(value: &Value) -> f64 {
 #[test]
 fn build_ends_with_a_summary() {
     let folder = Folder::new();
-    let text = folder.done("build --resolution 4 -o cube");
-    for name in ["nodes:", "exact:", "within 1:", "within 2:", "p95", "max", "time:", "file:"] {
+    let text = folder.done("build --preset konig2020 --resolution 4 -o cube");
+    let kinds = ["reflectance:", "with dye:", "steeper:", "missed:"];
+    let numbers = ["nodes:", "within 1:", "within 2:", "p95", "max", "time:", "file:"];
+    for name in kinds.into_iter().chain(numbers) {
         assert!(text.contains(name), "{name}: {text}");
     }
-    let json = folder.json("build --resolution 4 -o again");
+    let json = folder.json("build --preset konig2020 --resolution 4 -o again");
     let summary = &json["summary"];
     assert_eq!(summary["nodes"], 64);
     let count = |name: &str| summary[name].as_u64().unwrap();
     assert!(count("exact") <= count("within_1") && count("within_1") <= count("within_2"));
     assert!(count("fluorescent") > 0 && count("exact") > 0);
+    let kind = |name: &str| summary["kinds"][name].as_u64().unwrap();
+    assert_eq!(kind("reflectance") + kind("dyed"), count("exact"));
+    assert_eq!((kind("steep"), kind("missed")), (0, 64 - count("exact")));
+    assert_eq!(json["preset"], "konig2020");
     assert_eq!(json["bytes"], folder.read("again").len());
     assert_eq!(folder.read("cube"), folder.read("again"));
 }
@@ -58,12 +64,28 @@ fn every_option_of_build_is_in_the_cube() {
         ("--model analytic --quantum-yield 0.5", "/model/quantum_yield", "0.5"),
         ("--dyes wide14", "/model/set", "\"wide14\""),
         ("--dyes ring", "/model/set", "\"ring\""),
-        ("--mixing separate", "/model/mixing", "\"separate\""),
+        ("--model dyes --mixing separate", "/model/mixing", "\"separate\""),
         ("--accounting photon", "/model/accounting", "\"photon\""),
         ("--quantum-yield 0.9", "/model/quantum_yield", "\"0.9\""),
-        ("--optical-density 4", "/model/optical_density", "4.0"),
+        ("--model dyes --optical-density 4", "/model/optical_density", "4.0"),
         ("--metric de76", "/fit/metric", "\"de76\""),
         ("--metric rgb", "/fit/metric", "\"rgb\""),
+        ("--model film", "/model/kind", "\"film\""),
+        ("--model film --dyes open8", "/model/set", "\"open8\""),
+        ("--model film --accounting energy", "/model/accounting", "\"energy\""),
+        ("--preset natural", "/fit/preset", "\"natural\""),
+        ("--preset natural", "/model/accounting", "\"photon\""),
+        ("--preset natural --sweeps 0", "/fit/preset", "null"),
+        ("--preset natural --slope-max-per-nm 0.03", "/fit/slope_under_dyes_per_nm", "0.02"),
+        ("--preset natural --slope-max-per-nm 0.015", "/fit/slope_under_dyes_per_nm", "0.015"),
+        ("--preset natural --slope-limits hard", "/fit/relaxed", "false"),
+        ("--preset konig2020", "/model/kind", "\"dyes\""),
+        ("--preset konig2020 --slope-limits relaxed", "/fit/relaxed", "true"),
+        ("--preset konig2020 --slope-max-per-nm 0.02", "/fit/slope_under_dyes_per_nm", "0.02"),
+        ("--preset jung2019", "/model/kind", "\"analytic\""),
+        ("--preset jakob2019", "/model/kind", "\"reflectance\""),
+        ("--preset jakob2019", "/fit/slope_max_per_nm", "null"),
+        ("--slope-under-dyes-per-nm 0.005", "/fit/slope_under_dyes_per_nm", "0.005"),
         ("--slope-max-per-nm none", "/fit/slope_max_per_nm", "null"),
         ("--slope-max-per-nm 0.02", "/fit/slope_max_per_nm", "0.02"),
         ("--sweeps 0", "/fit/sweeps", "0"),
@@ -128,7 +150,8 @@ fn dyes_in_other_units_are_normalized_on_request() {
 #[test]
 fn unpublished_quantum_yields_are_named_in_a_warning() {
     let folder = Folder::new();
-    let run = folder.run("build --resolution 2 --quantum-yield measured -o cube");
+    let run =
+        folder.run("build --preset konig2020 --resolution 2 --quantum-yield measured -o cube");
     assert_eq!(run.status, 0);
     assert_eq!(
         run.stderr,
@@ -145,7 +168,7 @@ fn inspect_is_text_with_aligned_values() {
         let line = text.lines().find(|line| line.starts_with(name)).unwrap();
         line.len() - line.split_once(": ").unwrap().1.trim_start().len()
     };
-    let columns = ["resolution", "RGB space", "illuminant", "slope limit", "max ΔE00"].map(column);
+    let columns = ["resolution", "RGB space", "illuminant", "slope limits", "max ΔE00"].map(column);
     // Δ has two bytes.
     assert_eq!(columns[..4], [columns[0]; 4], "{text}");
     assert_eq!(columns[4], columns[0] + 1, "{text}");
@@ -162,7 +185,7 @@ fn a_fresh_cube_keeps_every_law() {
         assert_eq!(report["interpolation"], mode);
     }
     for options in ["--model analytic", "--model reflectance", "--optical-density 4 --space srgb"] {
-        folder.done(&format!("build --resolution 4 -o other {options}"));
+        folder.done(&format!("build --preset konig2020 --resolution 4 -o other {options}"));
         folder.done("verify other --points 2000");
     }
     let text = folder.done("verify cube --points 0 --seed 7");
@@ -172,7 +195,11 @@ fn a_fresh_cube_keeps_every_law() {
 /// A cube in which every node has this reflectance, with a slope limit of 0.01/nm.
 fn cube_of(reflectance: Edge) -> Vec<u8> {
     let node = Node::new(reflectance, Fluorescence::None, 0.0);
-    let fit = FitRecord { slope_max_per_nm: Some(0.01), ..FitRecord::default() };
+    let fit = FitRecord {
+        slope_max_per_nm: Some(0.01),
+        slope_under_dyes_per_nm: Some(0.01),
+        ..FitRecord::default()
+    };
     let cube = Cube::new(Contract::default(), Model::Reflectance, fit, 2, vec![node; 8]);
     cube.unwrap().to_bytes()
 }
@@ -264,8 +291,12 @@ fn curves_are_drawn_as_svg() {
 
 #[test]
 fn export_holds_every_number_of_the_cube() {
-    for (options, dyes) in [("", true), ("--model analytic", false), ("--model reflectance", false)]
-    {
+    for (options, dyes) in [
+        ("", true),
+        ("--model film", true),
+        ("--model analytic", false),
+        ("--model reflectance", false),
+    ] {
         let folder = folder_with_cube(options);
         let report = folder.json("export cube nodes.csv");
         let text = String::from_utf8(folder.read("nodes.csv")).unwrap();
@@ -276,7 +307,7 @@ fn export_holds_every_number_of_the_cube() {
             lines.next(),
             Some(
                 "r,g,b,c0,c1,c2,shift_nm,width_nm,slope_per_nm,dye_a,dye_b,weight,concentration,\
-                 emission_peak_nm,stokes_shift_nm,de2000"
+                 density_a,density_b,emission_peak_nm,stokes_shift_nm,de2000"
             )
         );
         let lines: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
@@ -285,6 +316,45 @@ fn export_holds_every_number_of_the_cube() {
             check_line(&cube, index, cells, dyes);
         }
     }
+}
+
+#[test]
+fn a_film_is_reported_with_its_dyes_and_densities() {
+    let folder = Folder::new();
+    folder.done("build --preset natural --resolution 4 -o cube");
+    let found = folder.json("color cube 1 0.333333333333333 0.6666666666666666");
+    let films: Vec<_> =
+        found["parts"].as_array().unwrap().iter().map(|part| &part["fluorescence"]).collect();
+    let dyed = films.into_iter().find(|film| !film.is_null()).unwrap();
+    let densities = ["density_a", "density_b"].map(|name| number(&dyed[name]));
+    assert!(densities[0] >= densities[1] && densities[1] >= 0.0);
+    assert_eq!(number(&dyed["dose"]), densities[0] + densities[1]);
+    assert!(dyed["dye_a"].is_string() && dyed["dye_b"].is_null() == (densities[1] == 0.0));
+    let text = folder.done("color cube 1 0.333333333333333 0.6666666666666666");
+    assert!(text.contains("dose") && text.contains("kind:"), "{text}");
+    let text = folder.done("inspect cube");
+    for line in ["model:", "film", "any two of", "under dyes 0.02 per nm; relaxed"] {
+        assert!(text.contains(line), "{line}: {text}");
+    }
+    assert_eq!(folder.json("color cube 0.5 0.5 0.5")["kind"], "reflectance");
+}
+
+#[test]
+fn a_coefficient_table_has_no_slope_limit_unless_one_is_given() {
+    let folder = Folder::new();
+    folder.done("build --preset jakob2019 --space srgb --resolution 2 -o cube");
+    let limit = |options: &str| {
+        let words = format!("export cube x.coeff --resolution 4 {options}");
+        folder.json(&words)["slope_max_per_nm"].clone()
+    };
+    assert_eq!(limit(""), Value::Null);
+    assert_eq!(limit("--slope-max-per-nm 0.01"), 0.01);
+    let text = folder.done("export cube x.coeff --resolution 4");
+    assert!(text.contains("slope limit:  none"), "{text}");
+    let table = |folder: &Folder| folder.read("x.coeff");
+    let free = table(&folder);
+    folder.done("export cube x.coeff --resolution 4 --slope-max-per-nm 0.01");
+    assert_ne!(free, table(&folder));
 }
 
 #[test]
@@ -319,15 +389,19 @@ fn check_line(cube: &Cube, index: usize, cells: &[&str], dyes: bool) {
     }
     let [first, second, third] = node.fluorescence;
     match material.fluorescence {
-        Fluorescence::None => assert_eq!(cells[9..15], [""; 6]),
+        Fluorescence::None => assert_eq!(cells[9..17], [""; 8]),
         Fluorescence::Dyes { .. } => {
             assert!(dyes && !cells[9].is_empty() && !cells[10].is_empty());
             assert_eq!([single(11), single(12)], [first, second]);
         }
+        Fluorescence::Film { .. } => {
+            assert!(dyes && !cells[9].is_empty() && (second > 0.0) != cells[10].is_empty());
+            assert_eq!([single(13), single(14)], [first, second]);
+        }
         Fluorescence::Analytic { .. } => {
             assert!(!dyes);
-            assert_eq!([single(13), single(14), single(12)], [first, second, third]);
+            assert_eq!([single(15), single(16), single(12)], [first, second, third]);
         }
     }
-    assert_eq!(single(15), node.de2000);
+    assert_eq!(single(17), node.de2000);
 }

@@ -32,7 +32,7 @@ const TILE: [[f32; 3]; 4] = [GRAY, MAGENTA, [0.1, 0.5, 0.6], [0.0, 1.0, 0.0]];
 /// A cube, and a picture of four texels.
 fn desk() -> Folder {
     let folder = Folder::new();
-    folder.done("build --resolution 4 -o cube");
+    folder.done("build --preset konig2020 --resolution 4 -o cube");
     picture(&folder, "tile.exr", 2, &TILE, true);
     folder
 }
@@ -205,7 +205,7 @@ fn folders_and_udim_tiles_keep_their_names() {
 #[test]
 fn what_cannot_be_baked_is_repaired_only_if_asked() {
     let folder = Folder::new();
-    folder.done("build --resolution 2 -o cube");
+    folder.done("build --preset konig2020 --resolution 2 -o cube");
     picture(&folder, "bright.exr", 2, &[GRAY, [4.0, 1.0, 1.0], GRAY, [-1.0, 0.5, 0.5]], true);
     let line = folder.refused(1, "bake cube bright.exr -o out.exr");
     assert_eq!(

@@ -132,13 +132,13 @@ fn invalid_lights() {
 }
 
 #[test]
-fn a_light_of_one_nanometer_that_sums_over_five_miss() {
+fn a_light_that_nobody_sees() {
     let folder = Folder::new();
-    let rows = (300..=830).map(|nm| format!("{nm},{}\n", u32::from(nm == 562)));
+    let rows = (300..=830).map(|nm| format!("{nm},{}\n", u32::from(nm == 342)));
     folder.write("needle.csv", format!("wavelength_nm,power\n{}", rows.collect::<String>()));
-    let line = folder.refused(2, "build --illuminant needle.csv -o cube");
+    let line = folder.refused(1, "build --illuminant needle.csv -o cube");
     assert!(
-        line.starts_with("--illuminant: the observer CIE 1931 2° sees nothing of the light"),
+        line.starts_with("needle.csv: no power between 360 and 830 nm, expected some"),
         "{line}"
     );
 }
@@ -171,7 +171,7 @@ fn command_lines_that_do_not_fit() {
         ("build --observer hawk -o x", "--observer: unknown observer \"hawk\", expected cie-1931"),
         ("build --dyes none -o x", "--dyes: unknown dye set \"none\", expected konig8"),
         ("build --metric lab -o x", "--metric: unknown metric \"lab\", expected de2000"),
-        ("build --model paint -o x", "--model: unknown model \"paint\", expected dyes"),
+        ("build --model paint -o x", "--model: unknown model \"paint\", expected film"),
         ("build --adapt cat02 -o x", "--adapt: unknown adaptation \"cat02\", expected bradford"),
         ("build --resolution 1 -o x", "--resolution: 1, expected a whole number from 2 to 256"),
         ("build --resolution x -o x", "--resolution: \"x\", expected a whole number from 2 to 256"),
@@ -183,9 +183,39 @@ fn command_lines_that_do_not_fit() {
         ),
         ("build --slope-max-per-nm NaN -o x", "--slope-max-per-nm: slope limit NaN/nm, expected"),
         ("build --slope-max-per-nm x -o x", "--slope-max-per-nm: \"x\", expected a number"),
+        (
+            "build --slope-max-per-nm 0.01 --slope-under-dyes-per-nm 0.02 -o x",
+            "--slope-under-dyes-per-nm: slope limit 0.02/nm under dyes, expected at most that \
+             without dyes, 0.01/nm",
+        ),
+        (
+            "build --slope-under-dyes-per-nm 0 -o x",
+            "--slope-under-dyes-per-nm: slope limit 0/nm, expected 0.0001",
+        ),
+        (
+            "build --preset jakob2019 --slope-under-dyes-per-nm 0.01 -o x",
+            "--slope-under-dyes-per-nm: given with --model reflectance, expected --model film or",
+        ),
+        (
+            "build --slope-limits soft -o x",
+            "--slope-limits: unknown kind of slope limits \"soft\", expected hard or relaxed",
+        ),
+        ("build --preset paint -o x", "--preset: unknown preset \"paint\", expected natural,"),
+        (
+            "build --preset natural --method konig2020 -o x",
+            "--method: method konig2020 with the model film, expected dyes,",
+        ),
+        (
+            "build --preset natural --model dyes --method konig2020 -o x",
+            "--method: method konig2020 with two slope limits or relaxed ones, expected one hard",
+        ),
+        ("export cube x.csv --slope-max-per-nm 0.01", "--slope-max-per-nm: given with --format"),
         ("build --quantum-yield 1.5 -o x", "--quantum-yield: quantum yield 1.5, expected 0 to 1"),
         ("build --quantum-yield x -o x", "--quantum-yield: unknown quantum yield \"x\", expected"),
-        ("build --optical-density 0 -o x", "--optical-density: optical density 0, expected > 0"),
+        (
+            "build --model dyes --optical-density 0 -o x",
+            "--optical-density: optical density 0, expected > 0",
+        ),
         (
             "build --model analytic --emission-fwhm-nm 5 -o x",
             "--emission-fwhm-nm: width 5 nm, expected 15 to 80 nm",
@@ -196,7 +226,7 @@ fn command_lines_that_do_not_fit() {
         ),
         (
             "build --model reflectance --dyes konig8 -o x",
-            "--dyes: given with --model reflectance, expected --model dyes",
+            "--dyes: given with --model reflectance, expected --model film or dyes",
         ),
         (
             "build --model analytic --optical-density 4 -o x",
@@ -204,10 +234,10 @@ fn command_lines_that_do_not_fit() {
         ),
         (
             "build --model reflectance --accounting photon -o x",
-            "--accounting: given with --model reflectance, expected --model dyes or analytic",
+            "--accounting: given with --model reflectance, expected --model film or dyes or analytic",
         ),
         (
-            "build --emission-fwhm-nm 30 -o x",
+            "build --preset konig2020 --emission-fwhm-nm 30 -o x",
             "--emission-fwhm-nm: given with --model dyes, expected --model analytic",
         ),
         (

@@ -60,6 +60,8 @@ pub fn options(metric: Metric, sweeps: u32) -> FitOptions {
     FitOptions {
         metric,
         slope_max_per_nm: Some(SLOPE_MAX_PER_NM),
+        slope_under_dyes_per_nm: Some(SLOPE_MAX_PER_NM),
+        relaxed: false,
         sweeps,
         method: Method::Konig2020,
     }

@@ -69,7 +69,7 @@ pub(crate) struct ResultArgs {
     /// bands (spectral only)
     #[arg(long)]
     pub(crate) compact: bool,
-    /// Light under which colors are computed: D65, D60, D55, D50, A, E, or a CSV file with the
+    /// Light under which colors are computed: D65, D60, D55, D50, A, E, FL2, FL11, HP1, LED-B3, or a CSV file with the
     /// header `wavelength_nm,power` (radiance only)
     #[arg(long, value_name = "NAME|FILE")]
     pub(crate) light: Option<String>,
@@ -92,7 +92,7 @@ pub(crate) struct CheckArgs {
     /// Also report how close the materials of this cube come; its light and adaptation are used
     #[arg(long, value_name = "FILE")]
     pub(crate) cube: Option<PathBuf>,
-    /// Light: D65, D60, D55, D50, A, E, or a CSV file with the header `wavelength_nm,power`
+    /// Light: D65, D60, D55, D50, A, E, FL2, FL11, HP1, LED-B3, or a CSV file with the header `wavelength_nm,power`
     /// [default: D65]
     #[arg(long, value_name = "NAME|FILE", conflicts_with = "cube")]
     pub(crate) illuminant: Option<String>,

@@ -5,7 +5,7 @@ use upglow_terminal::parsed;
 
 /// The greatest slope of a reflectance, 1/nm, or `None` for no limit. A type of its own, because clap
 /// would read a plain `Option` as an option without default.
-pub(super) type SlopeLimit = Option<f64>;
+pub(crate) type SlopeLimit = Option<f64>;
 
 pub(super) fn slope_limit(text: &str) -> Result<SlopeLimit, String> {
     match text {

@@ -10,7 +10,7 @@ use upglow_terminal::{Console, Failure, Report, check_stopped};
 use crate::args::BuildArgs;
 use crate::files;
 use crate::output::{Lines, warn};
-use crate::plan::BuildPlan;
+use crate::plan::{BuildPlan, options_failure};
 
 #[derive(Debug, Serialize)]
 struct BuildReport {
@@ -18,6 +18,8 @@ struct BuildReport {
     bytes: u64,
     resolution: usize,
     model: &'static str,
+    /// `None` if model and options were chosen one by one.
+    preset: Option<String>,
     time_s: f64,
     summary: CubeSummary,
 }
@@ -31,7 +33,7 @@ pub(crate) fn run(args: &BuildArgs, console: &Console) -> Result<(), Failure> {
         .work(args.fit.threads, |bar| build_cube(&contract, &model, options, resolution, bar))?;
     let cube = built.map_err(|error| match error {
         BuildError::Stopped => Failure::Stopped,
-        BuildError::Options(error) => Failure::option("--slope-max-per-nm", error),
+        BuildError::Options(error) => options_failure(error, &options),
         BuildError::Cube(error) => Failure::option("--resolution", error),
         error => Failure::input("build", error),
     })?;
@@ -43,6 +45,7 @@ pub(crate) fn run(args: &BuildArgs, console: &Console) -> Result<(), Failure> {
         bytes: bytes.len() as u64,
         resolution,
         model: model.name(),
+        preset: cube.fit().preset.clone(),
         time_s: start.elapsed().as_secs_f64(),
         summary: CubeSummary::of(&cube),
     })
@@ -50,7 +53,7 @@ pub(crate) fn run(args: &BuildArgs, console: &Console) -> Result<(), Failure> {
 
 /// Warns that a yield of 1 is used for dyes without a published one.
 fn warn_of_unpublished_yields(model: &Model) {
-    let Model::Dyes(dyes) = model else { return };
+    let Some(dyes) = model.dyes() else { return };
     let unpublished = dyes.without_published_yield();
     if dyes.options().quantum_yield == QuantumYield::Measured && !unpublished.is_empty() {
         let names = unpublished.join(", ");

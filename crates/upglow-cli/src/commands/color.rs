@@ -5,7 +5,7 @@ use upglow_color::{
     Adaptation, ColorSolids, Colorimetry, Contract, Grid, Illuminant, LinearRgb, Metric, Nearest,
     RgbSpace, StandingKind, Xyz,
 };
-use upglow_fit::{FitOptions, Fitter};
+use upglow_fit::{FitOptions, Fitter, MaterialKind};
 use upglow_terminal::{Console, Failure};
 
 use super::color_report::{ColorReport, LightReport, PartReport, StandingReport};
@@ -92,6 +92,7 @@ impl<'a> Shown<'a> {
             xyz: self.target,
             interpolation: self.interpolation,
             de2000: self.de2000(self.color),
+            kind: self.kind(),
             standing: self.standing(),
             parts: self.parts(),
             illuminant: illuminant.name(),
@@ -100,6 +101,10 @@ impl<'a> Shown<'a> {
             plot: args.plot.as_ref().map(|path| path.display().to_string()),
             curves: &self.curves,
         }
+    }
+
+    fn kind(&self) -> MaterialKind {
+        MaterialKind::of_mixture(self.mixture, self.de2000(self.color), self.cube.fit())
     }
 
     fn parts(&self) -> Vec<PartReport<'_>> {

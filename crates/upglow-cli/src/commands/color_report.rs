@@ -3,7 +3,7 @@
 use serde::Serialize;
 use upglow::{Features, Fluorescence, Interpolation, Material, Model, Sigmoid, Vertex};
 use upglow_color::{Adaptation, LinearRgb, Xyz};
-use upglow_fit::CubeSummary;
+use upglow_fit::{CubeSummary, MaterialKind};
 use upglow_terminal::Report;
 
 use super::material_report::{ReflectanceReport, dye_names};
@@ -23,6 +23,7 @@ pub(crate) struct ColorReport<'a> {
     /// `None` for a direct fit.
     pub(crate) interpolation: Option<Interpolation>,
     pub(crate) de2000: f64,
+    pub(crate) kind: MaterialKind,
     pub(crate) standing: StandingReport,
     pub(crate) parts: Vec<PartReport<'a>>,
     pub(crate) illuminant: &'a str,
@@ -57,8 +58,25 @@ pub(crate) struct PartReport<'a> {
 #[derive(Debug, Serialize)]
 #[serde(untagged)]
 enum FluorescenceReport<'a> {
-    Dyes { dye_a: &'a str, dye_b: &'a str, weight: f64, concentration: f64 },
-    Analytic { emission_peak_nm: f64, stokes_shift_nm: f64, concentration: f64 },
+    Dyes {
+        dye_a: &'a str,
+        dye_b: &'a str,
+        weight: f64,
+        concentration: f64,
+    },
+    /// `dye_b` is `None` for a single dye.
+    Film {
+        dye_a: &'a str,
+        dye_b: Option<&'a str>,
+        density_a: f64,
+        density_b: f64,
+        dose: f64,
+    },
+    Analytic {
+        emission_peak_nm: f64,
+        stokes_shift_nm: f64,
+        concentration: f64,
+    },
 }
 
 /// The material's color under one light.
@@ -93,6 +111,11 @@ impl<'a> PartReport<'a> {
                 let used = shares.into_iter().filter(|(_, share)| *share > 0.0);
                 used.map(|(name, _)| format!("dye {name}")).collect()
             }
+            Some(FluorescenceReport::Film { dye_a, dye_b, .. }) => [Some(*dye_a), *dye_b]
+                .into_iter()
+                .flatten()
+                .map(|name| format!("dye {name}"))
+                .collect(),
             Some(FluorescenceReport::Analytic { emission_peak_nm, .. }) => {
                 vec![format!("emission peak {emission_peak_nm:.0} nm")]
             }
@@ -107,10 +130,16 @@ impl<'a> FluorescenceReport<'a> {
                 let [dye_a, dye_b] = dye_names(fluorescence, model)?;
                 Some(Self::Dyes { dye_a, dye_b, weight, concentration })
             }
+            Fluorescence::Film { densities: [density_a, density_b], .. } => {
+                let [dye_a, dye_b] = dye_names(fluorescence, model)?;
+                let dye_b = (density_b > 0.0).then_some(dye_b);
+                let dose = fluorescence.dose();
+                Some(Self::Film { dye_a, dye_b, density_a, density_b, dose })
+            }
             Fluorescence::Analytic { emission_peak_nm, stokes_shift_nm, concentration } => {
                 Some(Self::Analytic { emission_peak_nm, stokes_shift_nm, concentration })
             }
-            _ => None,
+            Fluorescence::None => None,
         }
     }
 }
@@ -155,11 +184,22 @@ impl ColorReport<'_> {
             .add("color", format_args!("{} ({r}, {g}, {b})", self.rgb_space))
             .add("reachable", self.standing.text())
             .add("material", material)
+            .add("kind", self.kind_text())
             .add("ΔE00", format_args!("{:.4}{remark}", self.de2000));
         if let Some(plot) = &self.plot {
             lines.add("plot", plot);
         }
         lines.to_string()
+    }
+
+    fn kind_text(&self) -> &'static str {
+        match self.kind {
+            MaterialKind::Reflectance => "reflectance alone, within the slope limit",
+            MaterialKind::Dyed => "with dye, within the slope limits",
+            MaterialKind::Steep => "steeper than the slope limits",
+            MaterialKind::Missed => "missed, no material of the cube matches",
+            _ => self.kind.label(),
+        }
     }
 
     fn shapes(&self) -> String {
@@ -185,7 +225,7 @@ impl ColorReport<'_> {
         table.to_string()
     }
 
-    /// A table of the dyes or the analytic curves of the parts that fluoresce.
+    /// A table of the dyes, the films or the analytic curves of the parts that fluoresce.
     fn fluorescence(&self) -> String {
         let mut dyes = Table::new([
             ("part", Side::Right),
@@ -193,6 +233,14 @@ impl ColorReport<'_> {
             ("share", Side::Right),
             ("dye", Side::Left),
             ("share", Side::Right),
+            ("dye", Side::Left),
+        ]);
+        let mut films = Table::new([
+            ("part", Side::Right),
+            ("dose", Side::Right),
+            ("density", Side::Right),
+            ("dye", Side::Left),
+            ("density", Side::Right),
             ("dye", Side::Left),
         ]);
         let head = ["part", "concentration", "emission peak nm", "Stokes shift nm"];
@@ -208,6 +256,16 @@ impl ColorReport<'_> {
                         (*dye_a).to_owned(),
                         format!("{weight:.4}"),
                         (*dye_b).to_owned(),
+                    ]);
+                }
+                Some(FluorescenceReport::Film { dye_a, dye_b, density_a, density_b, dose }) => {
+                    films.add([
+                        number,
+                        format!("{dose:.4}"),
+                        format!("{density_a:.4}"),
+                        (*dye_a).to_owned(),
+                        dye_b.map_or(String::new(), |_| format!("{density_b:.4}")),
+                        dye_b.unwrap_or_default().to_owned(),
                     ]);
                 }
                 Some(FluorescenceReport::Analytic {
@@ -227,6 +285,8 @@ impl ColorReport<'_> {
         }
         if !dyes.is_empty() {
             dyes.to_string()
+        } else if !films.is_empty() {
+            films.to_string()
         } else if !analytic.is_empty() {
             analytic.to_string()
         } else {

@@ -6,18 +6,18 @@ use std::path::PathBuf;
 use serde::Serialize;
 use upglow::{Cube, Model, Node, Sigmoid, Vertex};
 use upglow_color::Choice;
-use upglow_fit::{BuildError, fit_coefficients};
+use upglow_fit::{BuildError, Preset, fit_coefficients};
 use upglow_shader::{Language, Shader, ShaderError};
 use upglow_terminal::{Console, Failure, Report};
 
-use super::material_report::unsigned_zeros;
-use crate::args::{ExportArgs, ExportFormat};
+use super::material_report::{dye_names, unsigned_zeros};
+use crate::args::{ExportArgs, ExportFormat, SlopeLimit, limit_text};
 use crate::files;
 use crate::output::{Lines, warn};
 use crate::plan::refuse_ignored;
 
 const HEADER: &str = "r,g,b,c0,c1,c2,shift_nm,width_nm,slope_per_nm,dye_a,dye_b,weight,\
-                      concentration,emission_peak_nm,stokes_shift_nm,de2000";
+                      concentration,density_a,density_b,emission_peak_nm,stokes_shift_nm,de2000";
 
 #[derive(Clone, Debug, Serialize)]
 struct ExportReport {
@@ -25,6 +25,9 @@ struct ExportReport {
     format: &'static str,
     bytes: u64,
     nodes: usize,
+    /// Greatest slope of the reflectances of a coefficient table, or `None` for no limit.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    slope_max_per_nm: Option<SlopeLimit>,
     /// Files that the exported file refers to.
     textures: Vec<String>,
 }
@@ -49,6 +52,7 @@ pub(crate) fn run(args: &ExportArgs, console: &Console) -> Result<(), Failure> {
         format: kind.name(),
         bytes: bytes.len() as u64,
         nodes,
+        slope_max_per_nm: (kind == ExportFormat::Coeff).then(|| table_limit(args)),
         textures,
     })
 }
@@ -88,25 +92,36 @@ fn kind(args: &ExportArgs) -> Result<ExportFormat, Failure> {
             format!("not given, expected one of {names}, or an output with such a suffix");
         Failure::option("--format", message)
     })?;
-    let resolution = ("--resolution", args.resolution.is_some(), &[ExportFormat::Coeff][..]);
-    refuse_ignored("--format", kind, &[resolution])?;
+    let coeff = &[ExportFormat::Coeff][..];
+    let options = [
+        ("--resolution", args.resolution.is_some(), coeff),
+        ("--slope-max-per-nm", args.slope_max_per_nm.is_some(), coeff),
+    ];
+    refuse_ignored("--format", kind, &options)?;
     Ok(kind)
 }
 
 /// The resolution of the tables that Mitsuba 3 and pbrt-v4 include.
 const TABLE_RESOLUTION: usize = 64;
 
-/// A table of reflectances for the cube's RGB space, light and slope limit, and its number of nodes.
+/// The slope limit of a coefficient table: the one that was given, or that of the paper behind such
+/// tables. That of the cube is for materials with dyes; without dyes it would make colors dull.
+fn table_limit(args: &ExportArgs) -> SlopeLimit {
+    args.slope_max_per_nm.unwrap_or(Preset::Jakob2019.options().slope_max_per_nm)
+}
+
+/// A table of reflectances for the cube's RGB space and light, and its number of nodes.
 fn coeff(args: &ExportArgs, cube: &Cube, console: &Console) -> Result<(Vec<u8>, usize), Failure> {
     if !matches!(cube.model(), Model::Reflectance) {
         warn("a coefficient table has no fluorescence: colors that need it become duller");
     }
     let resolution = args.resolution.unwrap_or(TABLE_RESOLUTION);
     let fitted = console.work(args.threads, |bar| {
-        fit_coefficients(cube.contract(), cube.fit().slope_max_per_nm, resolution, bar)
+        fit_coefficients(cube.contract(), table_limit(args), resolution, bar)
     })?;
     let table = fitted.map_err(|error| match error {
         BuildError::Stopped => Failure::Stopped,
+        BuildError::Options(error) => Failure::option("--slope-max-per-nm", error),
         error => Failure::file(&args.file, error),
     })?;
     Ok((table.to_bytes(), table.nodes().len()))
@@ -136,23 +151,26 @@ fn shape_cells(node: &Node) -> String {
     format!("{c0},{c1},{c2},{features}")
 }
 
-/// First and second dye, weight, concentration, emission peak, Stokes shift. Cells that do not apply
+/// First and second dye, weight, concentration, density of each dye, emission peak, Stokes shift. Cells that do not apply
 /// to the model are empty, and all are empty if the node does not fluoresce.
-fn fluorescence_cells(node: &Node, model: &Model) -> [String; 6] {
+fn fluorescence_cells(node: &Node, model: &Model) -> [String; 8] {
     let [first, second, third] = node.fluorescence;
     let number = |value: f32| value.to_string();
-    let empty = String::new;
+    let names = dye_names(node.material(model).fluorescence, model);
+    let [dye_a, dye_b] = names.map_or_else(Default::default, |names| names.map(quoted));
+    let no = String::new;
     match model {
-        Model::Dyes(dyes) if second > 0.0 => {
-            let name = |dye: usize| quoted(&dyes.set().dyes()[dye].name);
-            let dye = usize::from(node.dye);
-            let [dye_a, dye_b] = [name(dye), name(dyes.partner(dye))];
-            [dye_a, dye_b, number(first), number(second), empty(), empty()]
+        Model::Dyes(_) if second > 0.0 => {
+            [dye_a, dye_b, number(first), number(second), no(), no(), no(), no()]
+        }
+        Model::Film(_) if first > 0.0 => {
+            let dye_b = if second > 0.0 { dye_b } else { no() };
+            [dye_a, dye_b, no(), no(), number(first), number(second), no(), no()]
         }
         Model::Analytic(_) if third > 0.0 => {
-            [empty(), empty(), empty(), number(third), number(first), number(second)]
+            [no(), no(), no(), number(third), no(), no(), number(first), number(second)]
         }
-        _ => [empty(), empty(), empty(), empty(), empty(), empty()],
+        _ => Default::default(),
     }
 }
 
@@ -168,10 +186,11 @@ fn quoted(text: &str) -> String {
 impl Report for ExportReport {
     fn text(&self) -> String {
         let mut lines = Lines::default();
-        lines
-            .add("format", self.format)
-            .add("nodes", self.nodes)
-            .add_file("file", &self.file, self.bytes);
+        lines.add("format", self.format).add("nodes", self.nodes);
+        if let Some(limit) = self.slope_max_per_nm {
+            lines.add("slope limit", limit_text(limit));
+        }
+        lines.add_file("file", &self.file, self.bytes);
         for texture in &self.textures {
             lines.add("textures", texture);
         }
@@ -197,20 +216,34 @@ mod tests {
         let model = Model::Dyes(DyeModel::new(set, DyeOptions::default()).unwrap());
         let node = Node {
             reflectance: [500.0, -0.5, 0.01],
-            dye: 7,
+            dyes: [7, 0],
             fluorescence: [0.1, 0.7, 0.0],
             de2000: 0.3,
         };
         let lines = lines(model, node);
         assert_eq!(lines.len(), 9);
-        assert!(lines.iter().all(|line| line.matches(',').count() == 15), "{lines:?}");
-        assert!(lines[8].starts_with("1,1,1,") && lines[8].ends_with(",0.1,0.7,,,0.3"));
+        assert!(lines.iter().all(|line| line.matches(',').count() == 17), "{lines:?}");
+        assert!(lines[8].starts_with("1,1,1,") && lines[8].ends_with(",0.1,0.7,,,,,0.3"));
+    }
+
+    #[test]
+    fn a_film_has_the_names_and_densities_of_its_dyes() {
+        let model = Preset::Natural.model();
+        let names: Vec<&str> =
+            model.dyes().unwrap().set().dyes().iter().map(|dye| dye.name.as_str()).collect();
+        let cells = |dyes: [u8; 2], [first, second]: [f32; 2]| {
+            let node = Node { dyes, fluorescence: [first, second, 0.0], ..Node::default() };
+            fluorescence_cells(&node, &model).join(",")
+        };
+        assert_eq!(cells([3, 1], [2.5, 0.5]), format!("{},{},,,2.5,0.5,,", names[3], names[1]));
+        assert_eq!(cells([3, 3], [2.5, 0.0]), format!("{},,,,2.5,0,,", names[3]));
+        assert_eq!(cells([0, 0], [0.0, 0.0]), ",,,,,,,");
     }
 
     #[test]
     fn a_flat_node_without_fluorescence_has_empty_cells() {
         let lines = lines(Model::Reflectance, Node::default());
-        assert_eq!(lines[1], "0,0,0,0,0,0,,,,,,,,,,0");
+        assert_eq!(lines[1], "0,0,0,0,0,0,,,,,,,,,,,,0");
     }
 
     #[test]

@@ -1,13 +1,15 @@
 //! `upglow inspect`: shows the contents of a cube.
 
 use serde::Serialize;
-use upglow::{AnalyticModel, Cube, DyeModel, DyeOptions, FitRecord, Model};
+use upglow::{
+    Accounting, AnalyticModel, Cube, DyeModel, DyeOptions, FitRecord, Model, QuantumYield,
+};
 use upglow_color::Contract;
-use upglow_fit::CubeSummary;
+use upglow_fit::{CubeSummary, Seam, seams};
 use upglow_terminal::{Console, Failure, Report};
 
 use super::inspect_table;
-use crate::args::InspectArgs;
+use crate::args::{InspectArgs, SlopeLimits};
 use crate::files;
 use crate::output::{Lines, Side, Table};
 
@@ -20,6 +22,7 @@ struct InspectReport<'a> {
     model: ModelReport<'a>,
     fit: &'a FitRecord,
     summary: CubeSummary,
+    seams: Vec<Seam>,
 }
 
 #[derive(Debug, Serialize)]
@@ -31,6 +34,12 @@ enum ModelReport<'a> {
         dyes: Vec<DyeReport<'a>>,
         #[serde(flatten)]
         options: DyeOptions,
+    },
+    Film {
+        set: &'a str,
+        dyes: Vec<DyeReport<'a>>,
+        accounting: Accounting,
+        quantum_yield: QuantumYield,
     },
     Analytic(AnalyticModel),
 }
@@ -63,6 +72,7 @@ pub(crate) fn run(args: InspectArgs, console: &Console) -> Result<(), Failure> {
         model: ModelReport::new(&cube),
         fit: cube.fit(),
         summary: CubeSummary::of(&cube),
+        seams: seams(&cube),
     })
 }
 
@@ -74,6 +84,12 @@ impl<'a> ModelReport<'a> {
                 set: model.set().name(),
                 dyes: DyeReport::of(model),
                 options: model.options(),
+            },
+            Model::Film(model) => Self::Film {
+                set: model.dyes().set().name(),
+                dyes: DyeReport::of(model.dyes()),
+                accounting: model.accounting(),
+                quantum_yield: model.quantum_yield(),
             },
             Model::Analytic(model) => Self::Analytic(*model),
         }
@@ -96,6 +112,13 @@ impl<'a> ModelReport<'a> {
                     .add("quantum yield", options.quantum_yield)
                     .add("optical density", density);
             }
+            Self::Film { set, dyes, accounting, quantum_yield } => {
+                lines
+                    .add("model", "film")
+                    .add("dyes", format_args!("{set}, any two of {}", dyes.len()))
+                    .add("accounting", accounting)
+                    .add("quantum yield", quantum_yield);
+            }
             Self::Analytic(model) => {
                 lines
                     .add("model", "analytic")
@@ -109,7 +132,9 @@ impl<'a> ModelReport<'a> {
 
     /// The dyes as a table; empty for other models.
     fn dye_table(&self) -> String {
-        let Self::Dyes { dyes, .. } = self else { return String::new() };
+        let (Self::Dyes { dyes, .. } | Self::Film { dyes, .. }) = self else {
+            return String::new();
+        };
         let mut table = Table::new([
             ("dye", Side::Left),
             ("yield used", Side::Right),
@@ -145,12 +170,24 @@ impl<'a> DyeReport<'a> {
     }
 }
 
+impl InspectReport<'_> {
+    fn slope_limits(&self) -> String {
+        let FitRecord { slope_max_per_nm, slope_under_dyes_per_nm, relaxed, .. } = self.fit;
+        let text = |limit: Option<f64>| limit.map_or("none".into(), |s| format!("{s} per nm"));
+        let kind = if *relaxed { SlopeLimits::Relaxed } else { SlopeLimits::Hard };
+        if matches!(self.model, ModelReport::Reflectance) {
+            return format!("{}, {kind}", text(*slope_max_per_nm));
+        }
+        let [alone, under_dyes] = [slope_max_per_nm, slope_under_dyes_per_nm].map(|l| text(*l));
+        format!("{alone}; under dyes {under_dyes}; {kind}")
+    }
+}
+
 impl Report for InspectReport<'_> {
     fn text(&self) -> String {
         let Contract { space, illuminant, observer, adaptation } = self.contract;
         let [red, green, blue] = space.primaries().map(|[x, y]| format!("({x}, {y})"));
         let [x, y] = space.white();
-        let slope = self.fit.slope_max_per_nm.map_or("none".into(), |s| format!("{s} per nm"));
         let mut lines = Lines::default();
         lines
             .add_file("file", &self.file, self.bytes)
@@ -163,12 +200,17 @@ impl Report for InspectReport<'_> {
             .add("adaptation", adaptation);
         self.model.add_to(&mut lines);
         lines
+            .add("preset", self.fit.preset.as_deref().unwrap_or("none"))
             .add("metric", &self.fit.metric)
-            .add("slope limit", slope)
+            .add("slope limits", self.slope_limits())
             .add("method", &self.fit.method)
             .add("sweeps", self.fit.sweeps)
             .add("evaluations", self.fit.evaluations)
             .add_summary(&self.summary);
+        for Seam { light, p90, worst, .. } in &self.seams {
+            let numbers = format_args!("{p90:.2} in one gradient of ten, {worst:.1} at most");
+            lines.add(format_args!("seams, {light}"), numbers);
+        }
         format!("{lines}{}", self.model.dye_table())
     }
 }

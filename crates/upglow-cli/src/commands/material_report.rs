@@ -26,11 +26,15 @@ pub(super) fn unsigned_zeros(Sigmoid { c0, c1, c2 }: Sigmoid) -> Sigmoid {
     Sigmoid { c0: c0 + 0.0, c1: c1 + 0.0, c2: c2 + 0.0 }
 }
 
-/// The names of the two dyes of a material; `None` if it has no dyes.
+/// The names of the two dyes of a material, the same twice for a film of one dye; `None` if it has no
+/// dyes.
 pub(super) fn dye_names(fluorescence: Fluorescence, model: &Model) -> Option<[&str; 2]> {
-    let (Fluorescence::Dyes { first, .. }, Model::Dyes(model)) = (fluorescence, model) else {
-        return None;
+    let numbers = match (fluorescence, model) {
+        (Fluorescence::Dyes { first, .. }, Model::Dyes(ring)) => [first, ring.partner(first)],
+        (Fluorescence::Film { dyes, .. }, Model::Film(_)) => dyes,
+        _ => return None,
     };
-    let name = |dye: usize| model.set().dyes().get(dye).map(|dye| dye.name.as_str());
-    Some([name(first)?, name(model.partner(first))?])
+    let set = model.dyes()?.set().dyes();
+    let [first, second] = numbers.map(|dye| set.get(dye).map(|dye| dye.name.as_str()));
+    Some([first?, second?])
 }

@@ -34,11 +34,16 @@ struct MaterialReport {
     #[serde(flatten)]
     reflectance: ReflectanceReport,
     dye: Option<String>,
+    /// The next dye in the ring, or the second dye of a film, which is the first one again if there is
+    /// no other.
     neighbor: Option<String>,
     weight: Option<f64>,
+    /// Optical densities of the dyes of a film.
+    densities: Option<[f64; 2]>,
     emission_peak_nm: Option<f64>,
     stokes_shift_nm: Option<f64>,
-    concentration: f64,
+    /// `None` for a film.
+    concentration: Option<f64>,
 }
 
 pub(crate) fn run(args: &ReadArgs, console: &Console) -> Result<(), Failure> {
@@ -81,12 +86,20 @@ impl MaterialReport {
         let Material { reflectance, fluorescence } = material;
         let [dye, neighbor] = dye_names(fluorescence, model)
             .map_or([None, None], |names| names.map(|name| Some(name.to_owned())));
-        let (weight, bells) = match fluorescence {
-            Fluorescence::Dyes { weight, .. } => (Some(weight), None),
+        let weight = match fluorescence {
+            Fluorescence::Dyes { weight, .. } => Some(weight),
+            _ => None,
+        };
+        let bells = match fluorescence {
             Fluorescence::Analytic { emission_peak_nm, stokes_shift_nm, .. } => {
-                (None, Some((emission_peak_nm, stokes_shift_nm)))
+                Some((emission_peak_nm, stokes_shift_nm))
             }
-            _ => (None, None),
+            _ => None,
+        };
+        let densities = match (fluorescence, model) {
+            (Fluorescence::Film { densities, .. }, _) => Some(densities),
+            (_, Model::Film(_)) => Some([0.0; 2]),
+            _ => None,
         };
         Self {
             texel,
@@ -94,9 +107,10 @@ impl MaterialReport {
             dye,
             neighbor,
             weight,
+            densities,
             emission_peak_nm: bells.map(|(peak, _)| peak),
             stokes_shift_nm: bells.map(|(_, shift)| shift),
-            concentration: fluorescence.concentration(),
+            concentration: densities.is_none().then_some(fluorescence.dose()),
         }
     }
 }
@@ -111,7 +125,7 @@ impl Texel {
 
 impl Report for MaterialReport {
     fn text(&self) -> String {
-        let Self { reflectance: shape, concentration, .. } = self;
+        let Self { reflectance: shape, .. } = self;
         let upglow::Sigmoid { c0, c1, c2 } = shape.coefficients;
         let mut lines = self.texel.lines();
         lines
@@ -125,7 +139,16 @@ impl Report for MaterialReport {
         if let (Some(peak), Some(shift)) = (self.emission_peak_nm, self.stokes_shift_nm) {
             lines.add("emission", format_args!("peak {peak:.1} nm, Stokes shift {shift:.1} nm"));
         }
-        lines.add("concentration", format_args!("{concentration:.4}"));
+        if let Some(concentration) = self.concentration {
+            lines.add("concentration", format_args!("{concentration:.4}"));
+        }
+        if let Some(densities) = self.densities {
+            let films = [&self.dye, &self.neighbor].into_iter().flatten().zip(densities);
+            for (dye, density) in films.filter(|(_, density)| *density > 0.0) {
+                lines.add("film", format_args!("density {density:.4} of {dye}"));
+            }
+            lines.add("dose", format_args!("{:.4}", densities[0] + densities[1]));
+        }
         lines.to_string()
     }
 }

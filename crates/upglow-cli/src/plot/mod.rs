@@ -18,9 +18,9 @@ const VISIBLE: f64 = 1e-3;
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub(crate) struct Curves {
     pub(crate) wavelengths_nm: Vec<f64>,
-    /// Share of light reflected without a change of wavelength, (1 − c·a)·r, 0..=1.
+    /// Share of light reflected without a change of wavelength, 0..=1.
     pub(crate) reflectance: Vec<f64>,
-    /// Share of light absorbed by the dyes, c·a, 0..=1.
+    /// Share of light absorbed by the dyes, 0..=1.
     pub(crate) absorption: Vec<f64>,
     /// Light emitted by fluorescence, relative to its peak; all zero without fluorescence.
     pub(crate) emission: Vec<f64>,
@@ -60,13 +60,13 @@ impl Curves {
     }
 }
 
-/// c·a at one wavelength: what a white reflectance with the same dyes does not reflect.
+/// The share absorbed at one wavelength: what a white reflectance with the same dyes does not reflect.
 fn absorption(mixture: &Mixture<'_>, nm: f64) -> f64 {
     let of_part = |model: &Model, part: Material| {
         let white = Material { reflectance: Sigmoid::flat(1.0), ..part };
         1.0 - Mixture::of(model, white).reflectance(nm)
     };
-    let glowing = mixture.parts().filter(|(_, part)| part.fluorescence.concentration() > 0.0);
+    let glowing = mixture.parts().filter(|(_, part)| part.fluorescence.dose() > 0.0);
     glowing.map(|(weight, part)| weight * of_part(mixture.model(), part)).sum()
 }
 

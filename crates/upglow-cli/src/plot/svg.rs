@@ -91,11 +91,11 @@ impl Stroke {
 fn strokes(curves: &Curves) -> Vec<Stroke> {
     let stroke = |name, color, dashes, points| Stroke { name, color, dashes, points };
     let reflectance = points(curves.shown(&curves.reflectance));
-    let mut strokes = vec![stroke("reflectance (1 − c·a)·r", INK, "none", reflectance)];
+    let mut strokes = vec![stroke("reflectance", INK, "none", reflectance)];
     if curves.is_fluorescent() {
         let absorption = points(curves.lifted(&curves.absorption));
         let emission = points(curves.lifted(&curves.emission));
-        strokes.push(stroke("absorption c·a", "#0072b2", "9 4", absorption));
+        strokes.push(stroke("absorbed by dyes", "#0072b2", "9 4", absorption));
         strokes.push(stroke("emission / its peak", "#d55e00", "2.5 3", emission));
     }
     strokes
