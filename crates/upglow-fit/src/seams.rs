@@ -6,6 +6,8 @@ use upglow_color::{
     Contract, Grid, Illuminant, Lab, LinearRgb, Metric, Spectrum, Xyz, lab_from_xyz,
 };
 
+use crate::verify::random_rgb;
+
 /// How uneven gradients become under one light.
 ///
 /// Between two colors that a cube matches, the colors of its materials are even under the contract's
@@ -36,14 +38,13 @@ const MATCHED: f64 = 0.1;
 /// Gradients with smaller steps are gray in gray and have no seams, ΔE76.
 const LEAST_STEP: f64 = 0.02;
 
-/// The lights under which seams are measured: incandescent light, a white LED, and a lamp that is nearly
-/// all ultraviolet.
+/// The lights under which seams are measured: incandescent light, a white LED, and an ultraviolet lamp.
 pub(crate) fn lights() -> [Illuminant; 3] {
     let named = |name| Illuminant::named(name).expect("it is built in");
     [named("A"), named("LED-B3"), ultraviolet()]
 }
 
-/// A lamp at 365 nm, 20 nm wide, with a twentieth of daylight: half of its power is ultraviolet.
+/// A lamp at 365 nm, 20 nm wide, with a twentieth of daylight: each has about half of the power.
 fn ultraviolet() -> Illuminant {
     let line = Illuminant::line("line", 365.0, 20.0).expect("it is a line");
     let daylight = Illuminant::named("D65").expect("it is built in");
@@ -87,30 +88,13 @@ fn gradients(cube: &Cube) -> Vec<[[f64; 3]; 2]> {
             Metric::De2000.distance(&colorimetry, target, mixture.color(&sums)) <= MATCHED
         })
     };
-    let mut numbers = Numbers(0);
-    let mut colors = std::iter::repeat_with(|| [(); 3].map(|()| numbers.next()))
-        .take(8 * GRADIENTS)
-        .filter(is_matched);
+    let mut colors = (0..8 * GRADIENTS).map(|i| random_rgb(0, i).0).filter(is_matched);
     let mut gradients = Vec::with_capacity(GRADIENTS);
     while gradients.len() < GRADIENTS {
         let (Some(one), Some(two)) = (colors.next(), colors.next()) else { break };
         gradients.push([one, two]);
     }
     gradients
-}
-
-/// Steele's `SplitMix64`.
-struct Numbers(u64);
-
-impl Numbers {
-    /// A number in 0..1.
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
 }
 
 /// The colors of a cube's materials under one light.
