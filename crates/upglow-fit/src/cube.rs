@@ -40,8 +40,10 @@ pub enum BuildError {
 ///
 /// First a coarse lattice, each node alone; then, in two steps, the nodes between, each from the
 /// materials at the corners of its cell; then sweeps, as many as the options say, in which each node
-/// that missed its color tries the materials of its six neighbors. A sweep uses the materials from
-/// before it, so the result does not depend on the number of threads.
+/// that missed its color tries the materials of its six neighbors; nodes of films also to lower their
+/// dose. Last, each node of a film takes, of its matches with at most twice the least dose, the one nearest
+/// to its neighbors' materials. Each of these steps uses the neighbors' materials from before it, so the
+/// result does not depend on the number of threads.
 /// [`Method::Exhaustive`](crate::Method::Exhaustive) and the methods of König et al. 2020 fit every node
 /// alone before the sweeps.
 ///
@@ -69,8 +71,7 @@ pub fn build_cube(
         }
     }
     if fitter.is_film() && options.method == Method::Search {
-        let stage = Stage::new("choosing", lattice.len(), watch);
-        fits = neighbors::Choice::new(&fitter, lattice, contract, model).choose(fits, &stage)?;
+        fits = neighbors::Choice::new(&fitter, lattice, contract, model).choose(fits, watch)?;
     }
     let nodes = Stage::new("measuring", lattice.len(), watch)
         .each(lattice.len(), |index| stored_node(&fitter, lattice.rgb(index), &fits[index]))?;

@@ -49,3 +49,15 @@ impl From<Fit> for Start {
         Self { reflectance: fit.reflectance, fluorescence: fit.fluorescence }
     }
 }
+
+/// The better of two fits: a match before a miss, of two matches the one with less dose, of two misses
+/// the nearer; the first where they are equal.
+pub(crate) fn better(known: Option<Fit>, found: Fit) -> Fit {
+    known.filter(|known| key(known) <= key(&found)).unwrap_or(found)
+}
+
+/// What makes a fit better; less is better.
+pub(crate) fn key(fit: &Fit) -> (bool, f64) {
+    let is_missed = !fit.is_matched();
+    (is_missed, if is_missed { fit.distance } else { fit.fluorescence.dose() })
+}

@@ -5,10 +5,9 @@ use std::sync::atomic::Ordering;
 use upglow::{Fluorescence, Model, ModelOnGrid};
 use upglow_color::{Contract, LinearRgb};
 
-use crate::fit::Fit;
+use crate::fit::{Fit, better};
 use crate::options::{FitOptions, FitOptionsError, Method};
 use crate::search::context::{Context, Stage};
-use crate::search::film::better;
 use crate::search::job::Job;
 use crate::search::konig2020::Parameters;
 
@@ -120,23 +119,17 @@ impl Fitter {
         }
     }
 
+    /// Whether no neighbor's material can improve a fit: it matches, and no dose could be smaller.
     pub(crate) fn is_final(&self, fit: &Fit) -> bool {
         fit.is_matched() && (!self.is_film() || fit.fluorescence == Fluorescence::None)
     }
 
-    /// Matches of `rgb` near the materials of its neighbors: of the kind of `known`, and of some kinds of
-    /// the neighbors, each pulled towards the mean of the neighbors of its kind.
-    pub(crate) fn matches_near(
-        &self,
-        rgb: LinearRgb,
-        known: Fit,
-        neighbors: &[Fit],
-        kinds: usize,
-    ) -> Vec<Fit> {
+    /// Matches of `rgb` near the materials of its neighbors, no steeper than the limit that `known` needed.
+    pub(crate) fn matches_near(&self, rgb: LinearRgb, known: Fit, neighbors: &[Fit]) -> Vec<Fit> {
         let slope = known.reflectance.slope_per_nm.abs();
         let is_wide = |stage: &&Stage| slope <= stage.slope_limit_per_nm * (1.0 + SLOPE_MARGIN);
         let stage = self.with_dyes.iter().find(is_wide).unwrap_or(self.main());
-        self.job_at(rgb, stage).matches_near(known, neighbors, kinds)
+        self.job_at(rgb, stage).matches_near(known, neighbors)
     }
 
     pub(crate) fn is_film(&self) -> bool {
@@ -160,12 +153,13 @@ impl Fitter {
                     break;
                 }
             }
-            best = better(Some(best), self.with_dyes(&job, around, passive));
+            best = better(Some(best), self.glowing(&job, around, passive));
         }
         best
     }
 
-    fn with_dyes(&self, job: &Job<'_>, around: &[Fit], passive: Fit) -> Fit {
+    /// The best material with dyes by the method of the options.
+    fn glowing(&self, job: &Job<'_>, around: &[Fit], passive: Fit) -> Fit {
         match (self.is_film(), self.options.method) {
             (true, Method::Exhaustive) => job.film_exhaustively(),
             (true, _) => job.film(around, passive),

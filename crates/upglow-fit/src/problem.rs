@@ -6,6 +6,7 @@ use upglow::{AnalyticModel, DyeModel, Edge, Emitted, FilmModel, ModelOnGrid};
 use upglow_color::{Goal, Grid, Matrix3, Xyz};
 
 pub(crate) mod parabola;
+pub(crate) mod shortest_step;
 pub(crate) mod solver;
 pub(crate) mod sums;
 
@@ -203,9 +204,15 @@ pub(crate) struct FilmProblem<'a> {
     pub(crate) absorption: [&'a Lanes; 2],
 }
 
+/// The color under a film, its derivatives by the unknowns, and the light that passes the film.
+struct FilmColor {
+    color: Xyz,
+    derivatives: [Xyz; 5],
+    passed: Lanes,
+}
+
 impl FilmProblem<'_> {
-    /// The color, and its derivatives by the unknowns.
-    pub(crate) fn color(&self, &[s0, s1, s2, a0, a1]: &[f64; 5]) -> (Xyz, [Xyz; 5]) {
+    fn color(&self, &[s0, s1, s2, a0, a1]: &[f64; 5]) -> FilmColor {
         let (parabola, jacobian) = self.shape.chart([s0, s1, s2]);
         let mut passed = [0.0; MOST_SAMPLES];
         let passed = &mut passed[..self.model.wavelengths_nm().len()];
@@ -215,40 +222,35 @@ impl FilmProblem<'_> {
         let [a, b] = self.absorption.map(|a| lanes_from(|i| a[i] * passed[i]));
         let reflected = self.sums.reflect(parabola, &blocked, [&a, &b]);
         let [by_s0, by_s1, by_s2] = by_shape(&reflected, jacobian);
-        let by_density =
+        let [by_a0, by_a1] =
             [0, 1].map(|dye| Xyz::from(emitted.derivatives[dye]) - LN_10 * reflected.seen_by[dye]);
         let color = reflected.color + Xyz::from(emitted.color);
-        (color, [by_s0, by_s1, by_s2, by_density[0], by_density[1]])
+        FilmColor { color, derivatives: [by_s0, by_s1, by_s2, by_a0, by_a1], passed }
     }
-}
 
-impl FilmProblem<'_> {
-    /// The change of the residuals with the optical density of each dye of the set, `[dye]`.
-    pub(crate) fn by_every_dye(&self, x: &[f64; 5], lanes: &[Lanes]) -> Vec<[f64; 3]> {
+    /// How the residuals change with each unknown, and with the optical density of each dye of the set,
+    /// whose absorptions are `lanes`.
+    pub(crate) fn by_every_dye(
+        &self,
+        x: &[f64; 5],
+        lanes: &[Lanes],
+    ) -> ([[f64; 3]; 5], Vec<[f64; 3]>) {
+        let FilmColor { color, derivatives, passed } = self.color(x);
         let &[s0, s1, s2, a0, a1] = x;
-        let (parabola, _) = self.shape.chart([s0, s1, s2]);
-        let reflectance = self.sums.reflectance(parabola);
-        let film = [a0, a1];
-        let shown = lanes_from(|i| {
-            let density = film[0] * self.absorption[0][i] + film[1] * self.absorption[1][i];
-            reflectance[i] * 10_f64.powf(-density)
+        let reflectance = self.sums.reflectance(self.shape.chart([s0, s1, s2]).0);
+        let emitted = self.model.emitted_by_dyes_of_set(self.dyes, [a0, a1]);
+        let (_, by_color) = self.goal.residuals(color);
+        let by_dye = emitted.into_iter().zip(lanes).map(|(emitted, a)| {
+            let lost = self.sums.integrate(|i| reflectance[i] * passed[i] * a[i]);
+            by_color * (Xyz::from(emitted) - LN_10 * lost).0
         });
-        let emitted = self.model.emitted_by_dyes_of_set(self.dyes, film);
-        let (_, by_color) = self.goal.residuals(self.color(x).0);
-        emitted
-            .into_iter()
-            .zip(lanes)
-            .map(|(emitted, a)| {
-                let lost = self.sums.integrate(|i| shown[i] * a[i]);
-                by_color * (Xyz::from(emitted) - LN_10 * lost).0
-            })
-            .collect()
+        (derivatives.map(|by| by_color * by.0), by_dye.collect())
     }
 }
 
 impl Residuals<3, 5> for FilmProblem<'_> {
     fn eval(&self, x: &[f64; 5]) -> ([f64; 3], Jacobian<3, 5>) {
-        let (color, derivatives) = self.color(x);
+        let FilmColor { color, derivatives, .. } = self.color(x);
         residuals_of(&self.goal, color, derivatives)
     }
 

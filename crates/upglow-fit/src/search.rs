@@ -1,7 +1,7 @@
 //! Our search for the material of a color: reflectance first, then the most promising starts.
 
 pub(crate) mod context;
-pub(crate) mod film;
+mod film;
 pub(crate) mod job;
 pub(crate) mod konig2020;
 mod least;
@@ -11,11 +11,10 @@ mod starts;
 use upglow::{DyeModel, Edge, Fluorescence, Model};
 use upglow_color::{Metric, ciede2000};
 
-use crate::fit::{EXACT, Fit, Start};
+use crate::fit::{EXACT, Fit, Start, better};
 use crate::problem::Shape;
 use crate::problem::parabola::{MIDDLE_NM, sigmoid_of};
 use crate::problem::solver::{SolverOptions, solve};
-use film::better;
 use job::Job;
 use least::LeastConcentration;
 

@@ -1,4 +1,4 @@
-//! Of the exact matches of a node, the one nearest to its neighbors' materials.
+//! Chooses, among the exact matches of each node, the one nearest to its neighbors' materials.
 
 use rayon::prelude::*;
 use upglow::{Fluorescence, Model, ModelOnGrid};
@@ -9,6 +9,7 @@ use super::lattice::Lattice;
 use crate::cube::BuildError;
 use crate::fit::Fit;
 use crate::fitter::Fitter;
+use crate::progress::Watch;
 use crate::seams::lights;
 
 /// A match may have this many times the least dose.
@@ -17,17 +18,14 @@ const MOST_DOSE: f64 = 2.0;
 /// How often each node looks at its neighbors.
 const ROUNDS: usize = 3;
 
-/// How many kinds of its neighbors' materials a node tries.
-const KINDS_TRIED: usize = 3;
-
 /// How the colors of a material shift from the contract's light to others, in Lab.
 type Shifts = [[f64; 3]; 3];
 
 /// Replaces the material of each node that fluoresces by the match nearest to the materials of its
 /// neighbors, of those with at most twice the least dose.
 ///
-/// Two materials are near if their colors shift alike under other lights. Nodes take turns like the
-/// fields of a chessboard, so that the neighbors of a node keep still while it chooses.
+/// Two materials are near if their colors shift alike under other lights. Nodes are updated in two sets,
+/// like the fields of a chessboard: while a node is updated, none of its neighbors changes.
 pub(super) struct Choice<'f> {
     fitter: &'f Fitter,
     lattice: Lattice,
@@ -51,25 +49,23 @@ impl<'f> Choice<'f> {
     pub(super) fn choose(
         &self,
         mut fits: Vec<Fit>,
-        stage: &Stage<'_>,
+        watch: &dyn Watch,
     ) -> Result<Vec<Fit>, BuildError> {
+        let has_choice =
+            |i: &usize| fits[*i].is_matched() && fits[*i].fluorescence != Fluorescence::None;
+        let fields: [Vec<usize>; 2] = (0..fits.len())
+            .filter(has_choice)
+            .partition(|&node| self.lattice.parity(node) == 0)
+            .into();
+        let stage = Stage::new("choosing", ROUNDS * (fields[0].len() + fields[1].len()), watch);
         let least: Vec<f64> = fits.iter().map(|fit| fit.fluorescence.dose()).collect();
         let mut shifts: Vec<Shifts> = fits.par_iter().map(|fit| self.shifts(fit)).collect();
-        for _ in 0..ROUNDS {
-            for parity in 0..2 {
-                let may_move = |i: &usize| {
-                    self.lattice.parity(*i) == parity
-                        && fits[*i].is_matched()
-                        && fits[*i].fluorescence != Fluorescence::None
-                };
-                let nodes: Vec<usize> = (0..fits.len()).filter(may_move).collect();
-                let chosen = stage.each(nodes.len(), |k| {
-                    self.chosen(&fits, &shifts, nodes[k], MOST_DOSE * least[nodes[k]])
-                })?;
-                for (node, (fit, shift)) in nodes.into_iter().zip(chosen) {
-                    fits[node] = fit;
-                    shifts[node] = shift;
-                }
+        for nodes in std::iter::repeat_n(&fields, ROUNDS).flatten() {
+            let chosen = stage.each(nodes.len(), |k| {
+                self.chosen(&fits, &shifts, nodes[k], MOST_DOSE * least[nodes[k]])
+            })?;
+            for (&node, chosen) in nodes.iter().zip(chosen) {
+                (fits[node], shifts[node]) = chosen;
             }
         }
         Ok(fits)
@@ -91,10 +87,8 @@ impl<'f> Choice<'f> {
         let distance = |of: &Shifts| around.iter().map(|&i| square(of, &shifts[i])).sum::<f64>();
         let mut best = (known, shifts[node]);
         let mut least = distance(&best.1);
-        for candidate in self.fitter.matches_near(rgb, known, &neighbors, KINDS_TRIED) {
-            if candidate.fluorescence.dose() > most_dose || !candidate.is_matched() {
-                continue;
-            }
+        let matches = self.fitter.matches_near(rgb, known, &neighbors).into_iter();
+        for candidate in matches.filter(|fit| fit.fluorescence.dose() <= most_dose) {
             let shift = self.shifts(&candidate);
             let found = distance(&shift);
             if found < least {

@@ -5,12 +5,11 @@ use std::f64::consts::LN_10;
 use upglow::{AnalyticModel, Edge, FilmModel, Model};
 
 use crate::polish::Polisher;
-use crate::polish::descent::{
-    Bounds, LEAST_DAMPING, Measure, Point, UNKNOWNS, Unknowns, Vector, dot, shortest_step, within,
-};
+use crate::polish::descent::{Bounds, Measure, Point, UNKNOWNS, Unknowns, Vector};
 use crate::polish::start::{Family, Glow};
 use crate::polish::sums::Shown;
 use crate::problem::parabola::{MIDDLE_NM, Parabola, UNIT_NM, edge_of, scaled, sigmoid_of};
+use crate::problem::shortest_step::{LEAST_DAMPING, dot, shortest_step, within};
 use crate::problem::{EDGE_BOUND, LEVEL_BOUND};
 
 /// The color of a material, and its derivatives.

@@ -1,7 +1,7 @@
 //! Bounded steps of least length from a start to a color.
 
 use crate::fit::EXACT;
-use crate::problem::solver::solve_positive;
+use crate::problem::shortest_step::{LEAST_DAMPING, dot, shortest_step};
 
 /// Unknowns of a material: three of the reflectance, concentration, two of the fluorescence.
 pub(super) const UNKNOWNS: usize = 6;
@@ -38,8 +38,6 @@ pub(super) const LEAST_GAIN: f64 = 0.05;
 const DAMPING: f64 = 1e-4;
 /// Damping after a step that failed.
 const FAILED_DAMPING: f64 = 1e-3;
-/// Damping never falls below this, so that the system stays solvable in double precision.
-pub(super) const LEAST_DAMPING: f64 = 1e-8;
 
 impl Point {
     /// The distance from the target.
@@ -95,83 +93,6 @@ impl Point {
     }
 }
 
-/// The unknowns after the shortest step that removes the residual, as far as bounds and damping allow.
-///
-/// With M = Σ jᵥjᵥᵀ over the unknowns that move, the step is −jᵥ·(M + μ)⁻¹r. An unknown that would
-/// cross a bound is set to it, and the others compensate.
-#[inline(always)]
-pub(super) fn shortest_step<const M: usize>(
-    x: &Unknowns,
-    residual: &[f64; M],
-    by: &[[f64; M]; UNKNOWNS],
-    bounds: &Bounds,
-    damping: f64,
-) -> Unknowns {
-    let mut residual = *residual;
-    // Unknowns that are set to a bound stay there, and have derivatives of 0.
-    let (mut from, mut by) = (*x, *by);
-    let (mut wanted, mut next) = (*x, *x);
-    for _ in 0..UNKNOWNS {
-        let Some(y) = solve_positive(damped_squares(&by, damping), residual) else { return next };
-        let mut has_crossed = false;
-        for v in 0..UNKNOWNS {
-            wanted[v] = from[v] - dot(&by[v], &y);
-            next[v] = within(wanted[v], &bounds[v]);
-            has_crossed |= next[v] != wanted[v];
-        }
-        if !has_crossed {
-            break;
-        }
-        for v in 0..UNKNOWNS {
-            if next[v] != wanted[v] {
-                for i in 0..M {
-                    residual[i] += by[v][i] * (next[v] - x[v]);
-                }
-                (from[v], by[v]) = (next[v], [0.0; M]);
-            }
-        }
-    }
-    next
-}
-
-/// The lower triangle of Σ jᵥjᵥᵀ + μ.
-#[inline(always)]
-fn damped_squares<const M: usize>(by: &[[f64; M]; UNKNOWNS], damping: f64) -> [[f64; M]; M] {
-    let mut matrix = [[0.0; M]; M];
-    for v in 0..UNKNOWNS {
-        for i in 0..M {
-            for k in 0..i + 1 {
-                matrix[i][k] += by[v][i] * by[v][k];
-            }
-        }
-    }
-    let mut greatest = 0.0;
-    for i in 0..M {
-        greatest = if matrix[i][i] > greatest { matrix[i][i] } else { greatest };
-    }
-    for i in 0..M {
-        matrix[i][i] += damping * greatest;
-    }
-    matrix
-}
-
-/// The value clamped to its bounds; the lower one for NaN.
-#[inline(always)]
-pub(super) fn within(value: f64, &[least, greatest]: &[f64; 2]) -> f64 {
-    // One instruction each; `f64::max` takes more, for NaN.
-    let value = if value > least { value } else { least };
-    if value < greatest { value } else { greatest }
-}
-
-#[inline(always)]
-pub(super) fn dot<const M: usize>(a: &[f64; M], b: &[f64; M]) -> f64 {
-    let mut sum = 0.0;
-    for i in 0..M {
-        sum += a[i] * b[i];
-    }
-    sum
-}
-
 /// Solves three linear equations, `m` in rows; `None` if they have no unique solution.
 #[inline(always)]
 pub(super) fn solve(m: &[Vector; 3], r: &Vector) -> Option<Vector> {
@@ -189,40 +110,6 @@ fn cross(a: &Vector, b: &Vector) -> Vector {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    const BY: [Vector; UNKNOWNS] = [
-        [3.0, 1.0, -1.0],
-        [0.5, 2.0, 0.3],
-        [1.0, -1.0, 4.0],
-        [2.0, 0.1, 0.2],
-        [0.0, 1.0, 1.0],
-        [0.0; 3],
-    ];
-
-    fn left(x: &Unknowns, residual: Vector) -> Vector {
-        [0, 1, 2].map(|i| residual[i] + (0..UNKNOWNS).map(|v| x[v] * BY[v][i]).sum::<f64>())
-    }
-
-    #[test]
-    fn a_step_removes_the_residual_and_stays_within_bounds() {
-        let residual = [1.0, -2.0, 0.7];
-        for bound in [10.0, 0.7, 0.6] {
-            let bounds = [[-bound, bound]; UNKNOWNS];
-            let x = shortest_step(&[0.0; UNKNOWNS], &residual, &BY, &bounds, LEAST_DAMPING);
-            assert!(x.iter().all(|v| v.abs() <= bound), "{x:?}");
-            // The damping leaves a small residual.
-            assert!(left(&x, residual).iter().all(|r| r.abs() < 1e-6), "{bound} {x:?}");
-        }
-    }
-
-    #[test]
-    fn a_color_out_of_reach_is_approached() {
-        let residual = [10.0, -2.0, 0.7];
-        let bounds = [[-0.3, 0.3]; UNKNOWNS];
-        let x = shortest_step(&[0.0; UNKNOWNS], &residual, &BY, &bounds, LEAST_DAMPING);
-        let norm = |r: Vector| dot(&r, &r).sqrt();
-        assert!(norm(left(&x, residual)) < 0.9 * norm(residual), "{x:?}");
-    }
 
     #[test]
     fn three_equations_are_solved() {

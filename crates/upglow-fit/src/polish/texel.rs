@@ -10,13 +10,11 @@ use crate::polish::candidate::{
     value_bounds,
 };
 use crate::polish::corner::{Corners, all, mean};
-use crate::polish::descent::{
-    Bounds, LEAST_DAMPING, LEAST_GAIN, Measure, Point, Unknowns, Vector, dot, shortest_step, solve,
-    within,
-};
+use crate::polish::descent::{Bounds, LEAST_GAIN, Measure, Point, Unknowns, Vector, solve};
 use crate::polish::start::{self, Family, Glow};
 use crate::polish::sums::Shown;
 use crate::problem::parabola::MIDDLE_NM;
+use crate::problem::shortest_step::{LEAST_DAMPING, dot, shortest_step, within};
 
 /// CIEDE2000 is at most this many times a small distance in Lab: 1.5 near gray, where it stretches a*,
 /// and slightly more in the blue, where it rotates. A test looks for more.

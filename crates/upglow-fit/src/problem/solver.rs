@@ -42,6 +42,13 @@ pub(crate) struct Summary<const N: usize> {
     pub(crate) evaluations: usize,
 }
 
+impl SolverOptions {
+    /// To end a search whose steps were linear, near its result.
+    pub(crate) const fn near() -> Self {
+        Self { norm_reached: 1e-4, stationary_share: 1e-4, step_limit: 20, damping: 1e-6 }
+    }
+}
+
 /// Damping never falls below this share, so that a singular `JᵀJ` stays solvable.
 const LEAST_DAMPING: f64 = 1e-9;
 /// Added to the diagonal, for unknowns that have no effect.

@@ -3,9 +3,10 @@
 use upglow::Fluorescence;
 
 use super::job::Job;
-use super::least_dose::{LeastDose, multipliers};
-use crate::fit::{Fit, Start};
-use crate::problem::solver::{Jacobian, Residuals, SolverOptions, solve, solve_positive};
+use super::least_dose::{least_dose, multipliers};
+use crate::fit::{Fit, Start, better, key};
+use crate::problem::shortest_step::{LEAST_DAMPING, shortest_step};
+use crate::problem::solver::{Residuals, SolverOptions, Summary, solve};
 use crate::problem::{FilmProblem, Shape};
 
 /// How many of the table's starts are followed for a color by itself: the nearest ones, and of those
@@ -14,6 +15,10 @@ const STARTS_ALONE: [usize; 2] = [8, 16];
 /// The same if the neighbors' materials lead to no match.
 const STARTS_BESIDE_A_MATCH: [usize; 2] = [3, 3];
 const STARTS_BESIDE_MISSES: [usize; 2] = [1, 0];
+/// How many starts of each bucket the exhaustive search follows, and how many of its best fits it tries
+/// to improve.
+const EXHAUSTIVE_STARTS: usize = 4;
+const EXHAUSTIVE_EXCHANGES: usize = 16;
 /// A start this near, ΔE00, may end at the color.
 const NEAR: f64 = 25.0;
 
@@ -38,6 +43,9 @@ const LEAST_GAIN: f64 = 0.01;
 /// The density with which a dye enters beside a single one, as a share of the dose.
 const ENTERING_SHARE: f64 = 1e-3;
 
+/// How many kinds of its neighbors' materials are pulled towards their means.
+const KINDS_PULLED: usize = 3;
+
 impl Job<'_> {
     /// The match with the least dose, or else the nearest material, of fits from the materials `around`
     /// and from the nearest reflectance, and if these miss, from starts of the table.
@@ -60,10 +68,10 @@ impl Job<'_> {
 
     /// The same from many starts of the table, to compare with.
     pub(crate) fn film_exhaustively(&self) -> Fit {
-        let starts = self.starts().nearest_of_each(&self.goal, 4);
+        let starts = self.starts().nearest_of_each(&self.goal, EXHAUSTIVE_STARTS);
         let mut found: Vec<Fit> = starts.into_iter().map(|start| self.film_from(start)).collect();
         found.sort_by(|a, b| key(a).partial_cmp(&key(b)).expect("distances are numbers"));
-        let exchanged = found.into_iter().take(16).map(|fit| self.exchanged(fit));
+        let exchanged = found.into_iter().take(EXHAUSTIVE_EXCHANGES).map(|fit| self.exchanged(fit));
         exchanged.reduce(|best, fit| better(Some(best), fit)).expect("there is at least one start")
     }
 
@@ -133,10 +141,8 @@ impl Job<'_> {
 
     /// The same color with as little of the same dyes as possible.
     fn with_least_dose(&self, known: Fit) -> Fit {
-        if known.fluorescence == Fluorescence::None {
-            return known;
-        }
-        better(Some(known), self.follow(Start::from(known), self.edge_shape(), &LeastDose))
+        let Some((problem, x)) = self.film_of(&known) else { return known };
+        better(Some(known), self.film_found(&problem, least_dose(&problem, x)))
     }
 
     /// A match with the least dose that exchanging one dye after another leads to.
@@ -152,18 +158,11 @@ impl Job<'_> {
     /// A match with less dose in which one dye is replaced or added. As in the simplex method, a dye
     /// may enter if its cost, less what the others could be lowered by, is negative.
     fn with_another_dye(&self, fit: &Fit) -> Option<Fit> {
-        let Fluorescence::Film { dyes, densities: [a0, a1] } = fit.fluorescence else {
-            return None;
-        };
-        if !fit.is_matched() {
-            return None;
-        }
-        let problem = self.film_problem(self.edge_shape(), dyes);
-        let [s0, s1, s2] = problem.shape.numbers(fit.reflectance);
-        let x = [s0, s1, s2, a0, a1];
-        self.context.count(2);
-        let multipliers = multipliers(&problem, &x)?;
-        let by_dye = problem.by_every_dye(&x, &self.context.dye_lanes);
+        let (problem, x) = self.film_of(fit).filter(|_| fit.is_matched())?;
+        let (dyes, [.., a0, a1]) = (problem.dyes, x);
+        let (by, by_dye) = problem.by_every_dye(&x, &self.context.dye_lanes);
+        self.context.count(1);
+        let multipliers = multipliers(&x, &by, &problem.bounds())?;
         let cost = |by: &[f64; 3]| 1.0 - (0..3).map(|i| multipliers[i] * by[i]).sum::<f64>();
         let mut entering: Vec<(f64, usize)> = by_dye
             .iter()
@@ -189,12 +188,14 @@ impl Job<'_> {
         matches.find(|found| found.fluorescence.dose() < enough)
     }
 
-    /// Matches of the kinds of `known` and of some of the `neighbors`, each pulled towards the mean of the
-    /// neighbors of its kind.
-    pub(crate) fn matches_near(&self, known: Fit, neighbors: &[Fit], kinds: usize) -> Vec<Fit> {
+    /// Matches of the kind of `known` and of some kinds of the `neighbors`, each pulled towards the mean of
+    /// the neighbors of its kind.
+    pub(crate) fn matches_near(&self, known: Fit, neighbors: &[Fit]) -> Vec<Fit> {
         let mut starts = vec![known];
         for lead in self.leads_of(neighbors) {
-            if starts.len() <= kinds && starts.iter().all(|start| !super::is_alike(start, &lead)) {
+            if starts.len() <= KINDS_PULLED
+                && starts.iter().all(|start| !super::is_alike(start, &lead))
+            {
                 starts.push(lead);
             }
         }
@@ -204,11 +205,10 @@ impl Job<'_> {
     /// The match nearest to the mean of the neighbors that are like `start`, where a reflectance alone
     /// counts as one with the same dyes at no density.
     fn pulled(&self, start: &Fit, neighbors: &[Fit]) -> Option<Fit> {
-        let Fluorescence::Film { dyes, .. } = start.fluorescence else { return None };
-        let shape = self.edge_shape();
+        let (problem, x) = self.film_of(start)?;
         let coordinates = |fit: &Fit| {
-            let [s0, s1, s2] = shape.numbers(fit.reflectance);
-            let [a, b] = densities_of(fit.fluorescence, dyes)?;
+            let [s0, s1, s2] = problem.shape.numbers(fit.reflectance);
+            let [a, b] = densities_of(fit.fluorescence, problem.dyes)?;
             Some([s0, s1, s2, a, b])
         };
         let is_like = |fit: &&Fit| {
@@ -225,16 +225,26 @@ impl Job<'_> {
         for x in &alike {
             (0..5).for_each(|v| target[v] += x[v] / alike.len() as f64);
         }
-        let problem = self.film_problem(shape, dyes);
-        let (x, evaluations) = nearest_match(&problem, coordinates(start)?, &target);
-        self.context.count(evaluations);
-        let [s0, s1, s2, a, b] = x;
-        let fluorescence = Fluorescence::film((dyes[0], a), (dyes[1], b));
-        let fit = self.measured(shape.edge([s0, s1, s2]), fluorescence);
+        let fit = self.film_found(&problem, nearest_match(&problem, x, &target));
         fit.is_matched().then_some(fit)
     }
 
-    pub(crate) fn film_problem(&self, shape: Shape, dyes: [usize; 2]) -> FilmProblem<'_> {
+    /// The problem of a film's dyes, and its unknowns; `None` for other materials.
+    fn film_of(&self, fit: &Fit) -> Option<(FilmProblem<'_>, [f64; 5])> {
+        let Fluorescence::Film { dyes, densities: [a, b] } = fit.fluorescence else { return None };
+        let problem = self.film_problem(self.edge_shape(), dyes);
+        let [s0, s1, s2] = problem.shape.numbers(fit.reflectance);
+        Some((problem, [s0, s1, s2, a, b]))
+    }
+
+    /// The fit of unknowns that were found.
+    pub(super) fn film_found(&self, problem: &FilmProblem<'_>, found: Summary<5>) -> Fit {
+        let [s0, s1, s2, a, b] = self.counted(found);
+        let [i, j] = problem.dyes;
+        self.measured(problem.shape.edge([s0, s1, s2]), Fluorescence::film((i, a), (j, b)))
+    }
+
+    pub(super) fn film_problem(&self, shape: Shape, dyes: [usize; 2]) -> FilmProblem<'_> {
         let context = self.context;
         FilmProblem {
             sums: &context.sums,
@@ -245,18 +255,6 @@ impl Job<'_> {
             absorption: dyes.map(|dye| &context.dye_lanes[dye]),
         }
     }
-}
-
-/// The better of two fits: a match before a miss, of two matches the one with less dose, of two misses
-/// the nearer; the first where they are equal.
-pub(crate) fn better(known: Option<Fit>, found: Fit) -> Fit {
-    known.filter(|known| key(known) <= key(&found)).unwrap_or(found)
-}
-
-/// What makes a fit better; less is better.
-fn key(fit: &Fit) -> (bool, f64) {
-    let is_missed = !fit.is_matched();
-    (is_missed, if is_missed { fit.distance } else { fit.fluorescence.dose() })
 }
 
 /// The optical densities of two dyes in a fluorescence; `None` if it has others.
@@ -280,75 +278,24 @@ fn densities_of(fluorescence: Fluorescence, dyes: [usize; 2]) -> Option<[f64; 2]
 const UNITS: [f64; 5] = [0.5, 0.5, 0.5, 1.0, 1.0];
 const PULLS: usize = 3;
 
-/// The match nearest to `target`, by projection on the linearized residuals.
-fn nearest_match(
-    problem: &FilmProblem<'_>,
-    start: [f64; 5],
-    target: &[f64; 5],
-) -> ([f64; 5], usize) {
+/// The match nearest to `target`: steps from there to where the residuals, linearized around the last
+/// result, are zero.
+fn nearest_match(problem: &FilmProblem<'_>, start: [f64; 5], target: &[f64; 5]) -> Summary<5> {
+    let scaled = |x: &[f64; 5]| std::array::from_fn(|v| x[v] / UNITS[v]);
     let bounds = problem.bounds();
+    let scaled_bounds = std::array::from_fn(|v| bounds[v].map(|bound| bound / UNITS[v]));
     let mut x = start;
-    let mut evaluations = 0;
     for _ in 0..PULLS {
         let (residuals, jacobian) = problem.eval(&x);
-        evaluations += 1;
-        let mut is_fixed = [false; 5];
-        let mut next = x;
-        for _ in 0..4 {
-            let step = projection(&residuals, &jacobian, &x, target, &next, &is_fixed);
-            let Some(step) = step else { break };
-            let mut crossed = false;
-            for v in 0..5 {
-                if is_fixed[v] {
-                    continue;
-                }
-                let wanted = x[v] + step[v];
-                let [least, most] = bounds[v];
-                let kept = wanted.clamp(least, most);
-                next[v] = kept;
-                if kept != wanted {
-                    is_fixed[v] = true;
-                    crossed = true;
-                }
-            }
-            if !crossed {
-                break;
-            }
+        let by: [[f64; 3]; 5] = std::array::from_fn(|v| jacobian.map(|row| row[v] * UNITS[v]));
+        let mut residual = residuals;
+        for v in 0..5 {
+            (0..3).for_each(|i| residual[i] += jacobian[i][v] * (target[v] - x[v]));
         }
-        x = next;
+        let from = scaled(target);
+        let next = shortest_step(&from, &residual, &by, &scaled_bounds, LEAST_DAMPING);
+        x = std::array::from_fn(|v| next[v] * UNITS[v]);
     }
-    let last = SolverOptions { damping: 1e-6, step_limit: 10, ..SolverOptions::default() };
-    let found = solve(problem, x, &last);
-    (found.x, evaluations + found.evaluations)
-}
-
-/// The step of the unknowns that are not fixed, to the point nearest to `target` where the linearized
-/// residuals are zero; the fixed ones go to `next`.
-fn projection(
-    residuals: &[f64; 3],
-    jacobian: &Jacobian<3, 5>,
-    x: &[f64; 5],
-    target: &[f64; 5],
-    next: &[f64; 5],
-    is_fixed: &[bool; 5],
-) -> Option<[f64; 5]> {
-    let wish: [f64; 5] =
-        std::array::from_fn(|v| if is_fixed[v] { next[v] - x[v] } else { target[v] - x[v] });
-    let mut right = [0.0; 3];
-    let mut matrix = [[0.0; 3]; 3];
-    for i in 0..3 {
-        right[i] = -residuals[i] - (0..5).map(|v| jacobian[i][v] * wish[v]).sum::<f64>();
-        for j in 0..=i {
-            matrix[i][j] = (0..5)
-                .filter(|&v| !is_fixed[v])
-                .map(|v| jacobian[i][v] * jacobian[j][v] * UNITS[v] * UNITS[v])
-                .sum();
-        }
-        matrix[i][i] *= 1.0 + 1e-9;
-    }
-    let multipliers = solve_positive(matrix, right)?;
-    Some(std::array::from_fn(|v| {
-        let by = (0..3).map(|i| jacobian[i][v] * multipliers[i]).sum::<f64>();
-        if is_fixed[v] { wish[v] } else { wish[v] + UNITS[v] * UNITS[v] * by }
-    }))
+    let found = solve(problem, x, &SolverOptions::near());
+    Summary { evaluations: PULLS + found.evaluations, ..found }
 }

@@ -79,10 +79,7 @@ impl Job<'_> {
             }
             (Fluorescence::Film { dyes, densities: [a, b] }, Model::Film(_)) => {
                 let problem = self.film_problem(shape, dyes);
-                let x = self.counted(solve.solve(&problem, [s0, s1, s2, a, b]));
-                let [s0, s1, s2, a, b] = x;
-                let fluorescence = Fluorescence::film((dyes[0], a), (dyes[1], b));
-                self.measured(shape.edge([s0, s1, s2]), fluorescence)
+                self.film_found(&problem, solve.solve(&problem, [s0, s1, s2, a, b]))
             }
             (
                 Fluorescence::Analytic { emission_peak_nm, stokes_shift_nm, concentration },
@@ -108,7 +105,7 @@ impl Job<'_> {
     }
 
     /// The solution; adds its evaluations to the fitter's count.
-    fn counted<const N: usize>(&self, found: Summary<N>) -> [f64; N] {
+    pub(super) fn counted<const N: usize>(&self, found: Summary<N>) -> [f64; N] {
         self.context.count(found.evaluations);
         found.x
     }

@@ -41,8 +41,7 @@ impl Solve for LeastConcentration {
                 break;
             }
         }
-        let polish = SolverOptions { damping: 1e-6, step_limit: 20, ..SolverOptions::default() };
-        let found = solve(problem, x, &polish);
+        let found = solve(problem, x, &SolverOptions::near());
         Summary { evaluations: evaluations + found.evaluations, ..found }
     }
 }
