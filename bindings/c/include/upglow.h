@@ -306,8 +306,8 @@ UpglowStatus upglow_outgoing_elastic_probability(const UpglowMaterial *material,
                                                  float in_nm,
                                                  float *probability);
 
-// Computes the colors of a cube's materials under a light: "D65", "D60", "D55", "D50", "A", "E", "FL2", "FL11", "HP1" or "LED-B3",
-// or under the cube's own if `illuminant` is null.
+// Computes the colors of a cube's materials under a light: "D65", "D60", "D55", "D50", "A", "E",
+// "FL2", "FL11", "HP1" or "LED-B3", or under the cube's own if `illuminant` is null.
 //
 // `*colors` receives colors that the caller owns and must destroy with `upglow_colors_destroy`. All
 // memory for `upglow_xyz` is allocated here: 16 bytes per node of the cube.

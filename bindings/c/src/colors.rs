@@ -20,8 +20,8 @@ pub struct UpglowColors {
 
 const _: () = assert_shared_by_threads::<UpglowColors>();
 
-/// Computes the colors of a cube's materials under a light: "D65", "D60", "D55", "D50", "A", "E", "FL2", "FL11", "HP1" or "LED-B3",
-/// or under the cube's own if `illuminant` is null.
+/// Computes the colors of a cube's materials under a light: "D65", "D60", "D55", "D50", "A", "E",
+/// "FL2", "FL11", "HP1" or "LED-B3", or under the cube's own if `illuminant` is null.
 ///
 /// `*colors` receives colors that the caller owns and must destroy with `upglow_colors_destroy`. All
 /// memory for `upglow_xyz` is allocated here: 16 bytes per node of the cube.

@@ -18,7 +18,7 @@ pub(crate) use build::{
 };
 pub(crate) use pictures::{BakeArgs, BakeForm, CheckArgs, ExamplesArgs, LintArgs, ReadArgs};
 pub(crate) use values::SlopeLimit;
-use values::{rgb_space, slope_limit};
+use values::{lights, rgb_space, slope_limit};
 
 /// Turns RGB colors into physically valid spectral materials, with fluorescence where no
 /// reflectance can match the color.
@@ -78,9 +78,11 @@ pub(crate) struct InspectArgs {
     /// `upglow build`
     #[arg(long, value_parser = rgb_space)]
     pub(crate) space: Option<RgbSpace>,
-    /// Light of a coefficient table: D65, D60, D55, D50, A, E, FL2, FL11, HP1, LED-B3, or a CSV file with the header
-    /// `wavelength_nm,power` [default: D65]
-    #[arg(long, value_name = "NAME|FILE")]
+    #[arg(
+        long,
+        value_name = "NAME|FILE",
+        help = format!("Light of a coefficient table: {} [default: D65]", lights())
+    )]
     pub(crate) illuminant: Option<String>,
 }
 

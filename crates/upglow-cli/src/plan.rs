@@ -46,7 +46,7 @@ fn options(preset: Preset, args: &FitArgs) -> FitOptions {
     })
 }
 
-/// Names the option because of which nothing can be fitted.
+/// Names the option that the options of a fit are refused for.
 pub(crate) fn options_failure(error: FitOptionsError, options: &FitOptions) -> Failure {
     // By its bits, because NaN equals nothing.
     let is_alone = |found: f64| options.slope_max_per_nm.map(f64::to_bits) == Some(found.to_bits());

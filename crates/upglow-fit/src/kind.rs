@@ -110,14 +110,6 @@ impl KindCounts {
             (MaterialKind::Missed, missed),
         ]
     }
-
-    /// Adds the counts of another part of the work.
-    pub fn join(&mut self, other: &Self) {
-        self.reflectance += other.reflectance;
-        self.dyed += other.dyed;
-        self.steep += other.steep;
-        self.missed += other.missed;
-    }
 }
 
 impl FromIterator<MaterialKind> for KindCounts {

@@ -7,7 +7,7 @@ use upglow_color::{Adaptation, Choice, Metric, RgbSpace, choices};
 use upglow_fit::{FitOptions, Method, Preset};
 use upglow_terminal::{Threads, count, in_range, number, word};
 
-use super::values::{SlopeLimit, rgb_space, slope_limit};
+use super::values::{SlopeLimit, lights, rgb_space, slope_limit};
 
 #[derive(Clone, Debug, clap::Args)]
 #[command(allow_negative_numbers = true)]
@@ -30,8 +30,7 @@ pub(crate) struct ContractArgs {
     /// chromaticities Rx,Ry,Gx,Gy,Bx,By,Wx,Wy
     #[arg(long, default_value = "acescg", value_parser = rgb_space)]
     pub(crate) space: RgbSpace,
-    /// Light: D65, D60, D55, D50, A, E, FL2, FL11, HP1, LED-B3, or a CSV file with the header `wavelength_nm,power`
-    #[arg(long, default_value = "D65", value_name = "NAME|FILE")]
+    #[arg(long, default_value = "D65", value_name = "NAME|FILE", help = format!("Light: {}", lights()))]
     pub(crate) illuminant: String,
     /// Observer: cie-1931-2deg, or a CSV file of color-matching functions with the header
     /// `wavelength_nm,x,y,z`

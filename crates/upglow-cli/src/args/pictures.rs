@@ -6,7 +6,7 @@ use upglow_color::{Adaptation, Grid, RgbSpace, choices};
 use upglow_image::{Assumed, Encoding, Repair, Sample};
 use upglow_terminal::{Threads, word};
 
-use super::values::{bands, position, rgb_space};
+use super::values::{bands, lights, position, rgb_space};
 
 /// How to interpret a picture whose file does not say it.
 #[derive(Clone, Debug, clap::Args)]
@@ -69,9 +69,11 @@ pub(crate) struct ResultArgs {
     /// bands (spectral only)
     #[arg(long)]
     pub(crate) compact: bool,
-    /// Light under which colors are computed: D65, D60, D55, D50, A, E, FL2, FL11, HP1, LED-B3, or a CSV file with the
-    /// header `wavelength_nm,power` (radiance only)
-    #[arg(long, value_name = "NAME|FILE")]
+    #[arg(
+        long,
+        value_name = "NAME|FILE",
+        help = format!("Light under which colors are computed: {} (radiance only)", lights())
+    )]
     pub(crate) light: Option<String>,
     /// Number format of the channels: 16-bit half or 32-bit float
     #[arg(long, default_value_t = SampleName::Half, value_name = "NAME", value_parser = word::<SampleName>())]
@@ -92,9 +94,12 @@ pub(crate) struct CheckArgs {
     /// Also report how close the materials of this cube come; its light and adaptation are used
     #[arg(long, value_name = "FILE")]
     pub(crate) cube: Option<PathBuf>,
-    /// Light: D65, D60, D55, D50, A, E, FL2, FL11, HP1, LED-B3, or a CSV file with the header `wavelength_nm,power`
-    /// [default: D65]
-    #[arg(long, value_name = "NAME|FILE", conflicts_with = "cube")]
+    #[arg(
+        long,
+        value_name = "NAME|FILE",
+        conflicts_with = "cube",
+        help = format!("Light: {} [default: D65]", lights())
+    )]
     pub(crate) illuminant: Option<String>,
     /// Chromatic adaptation from the white of the RGB space to that of the light
     /// [default: bradford]

@@ -1,6 +1,6 @@
 //! Parsers of option values that are neither a word nor a number.
 
-use upglow_color::{Grid, RgbSpace, RgbSpaceError};
+use upglow_color::{Grid, Illuminant, RgbSpace, RgbSpaceError};
 use upglow_terminal::parsed;
 
 /// The greatest slope of a reflectance, 1/nm, or `None` for no limit. A type of its own, because clap
@@ -30,6 +30,12 @@ pub(super) fn rgb_space(text: &str) -> Result<RgbSpace, RgbSpaceError> {
         }
         _ => RgbSpace::named(text),
     }
+}
+
+/// The lights that an option takes, for its help.
+pub(super) fn lights() -> String {
+    let names = Illuminant::NAMES.join(", ");
+    format!("{names}, or a CSV file with the header `wavelength_nm,power`")
 }
 
 /// Wavelengths FIRST:LAST:STEP in nm, within the range of the built-in tables.

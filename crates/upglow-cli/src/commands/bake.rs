@@ -102,7 +102,7 @@ fn check_outputs(args: &BakeArgs, inputs: &[PathBuf], outputs: &[PathBuf]) -> Re
     Ok(())
 }
 
-/// Names the option or file because of which the cube cannot be baked in this form.
+/// Names the option or file that prevents the cube from being baked in this form.
 fn refused(error: BakeError, cube: &Path) -> Failure {
     match error {
         BakeError::NoDyes { .. } | BakeError::Compact(_) => Failure::option("--compact", error),

@@ -151,8 +151,8 @@ fn shape_cells(node: &Node) -> String {
     format!("{c0},{c1},{c2},{features}")
 }
 
-/// First and second dye, weight, concentration, density of each dye, emission peak, Stokes shift. Cells that do not apply
-/// to the model are empty, and all are empty if the node does not fluoresce.
+/// First and second dye, weight, concentration, density of each dye, emission peak, Stokes shift. Cells
+/// that do not apply to the model are empty, and all are empty if the node does not fluoresce.
 fn fluorescence_cells(node: &Node, model: &Model) -> [String; 8] {
     let [first, second, third] = node.fluorescence;
     let number = |value: f32| value.to_string();
