@@ -1,6 +1,7 @@
 //! The functions of every shader, and which of them a model needs.
 
-use upglow::{Accounting, Mixing, Model};
+use upglow::{Accounting, Model};
+use upglow_color::Choice as _;
 
 use crate::language::Language;
 
@@ -29,25 +30,16 @@ pub(crate) fn functions(model: &Model, language: Language) -> String {
 
 /// The conditions of template lines that hold for a model.
 fn traits(model: &Model) -> Vec<&'static str> {
-    let accounting = |accounting: Accounting| match accounting {
-        Accounting::Energy => "energy",
-        Accounting::Photon => "photon",
-    };
-    match model {
+    let mut traits = match model {
         Model::Reflectance => vec!["passive"],
         Model::Dyes(dyes) => {
-            let mixing = match dyes.options().mixing {
-                Mixing::Pooled => "pooled",
-                Mixing::Separate => "separate",
-            };
-            let accounting = accounting(dyes.options().accounting);
-            vec!["fluorescent", "concentrated", "dyes", mixing, accounting]
+            vec!["fluorescent", "concentrated", "dyes", dyes.options().mixing.name()]
         }
-        Model::Film(film) => vec!["fluorescent", "film", accounting(film.accounting())],
-        Model::Analytic(bells) => {
-            vec!["fluorescent", "concentrated", "bells", accounting(bells.accounting())]
-        }
-    }
+        Model::Film(_) => vec!["fluorescent", "film"],
+        Model::Analytic(_) => vec!["fluorescent", "concentrated", "bells"],
+    };
+    traits.extend(model.accounting().map(Accounting::name));
+    traits
 }
 
 /// The lines outside all `//@if` … `//@end`, and those inside of one that names a trait.

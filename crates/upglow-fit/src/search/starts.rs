@@ -55,11 +55,16 @@ const SHIFTS_NM: [f64; 4] = [15.0, 40.0, 75.0, 110.0];
 struct Variant {
     bucket: usize,
     fluorescence: Fluorescence,
-    /// Indices of the absorption curves, with their concentrations.
-    absorbers: [(usize, f64); 2],
-    /// What a film lets pass.
-    passed: Option<Lanes>,
+    filter: Filter,
     emitted: Xyz,
+}
+
+/// What a fluorescence takes of the light before the reflectance.
+enum Filter {
+    /// Absorption curves by index, with their concentrations.
+    Absorbers([(usize, f64); 2]),
+    /// A film that lets this share pass.
+    Film(Box<Lanes>),
 }
 
 impl StartTable {
@@ -72,7 +77,10 @@ impl StartTable {
     ) -> Self {
         let shapes = shapes(slope_limit_per_nm);
         let (variants, bells) = variants(model, sums);
-        let absorbers = if bells.is_empty() { dye_lanes } else { &bells };
+        let absorbers = match model.model() {
+            Model::Dyes(_) => dye_lanes,
+            Model::Reflectance | Model::Film(_) | Model::Analytic(_) => &bells,
+        };
         let white = model.colorimetry().white();
         let mut sorted: Vec<(usize, Entry, Lab)> = Vec::new();
         let per_kind = shapes.len().div_ceil(PASSIVE_BUCKETS);
@@ -82,11 +90,11 @@ impl StartTable {
             let taken: Vec<Xyz> =
                 absorbers.iter().map(|a| sums.integrate(|i| r[i] * a[i])).collect();
             for variant in &variants {
-                let color = match &variant.passed {
-                    Some(passed) => sums.integrate(|i| r[i] * passed[i]) + variant.emitted,
-                    None => variant.color(reflected, &taken),
+                let passed = match &variant.filter {
+                    Filter::Absorbers(absorbers) => reflected - absorbed(absorbers, &taken),
+                    Filter::Film(passed) => sums.integrate(|i| r[i] * passed[i]),
                 };
-                let lab = lab_from_xyz(color, white);
+                let lab = lab_from_xyz(passed + variant.emitted, white);
                 let fluorescence = variant.fluorescence;
                 let bucket = match fluorescence {
                     Fluorescence::None => index as usize / per_kind,
@@ -228,12 +236,10 @@ impl Form {
     }
 }
 
-impl Variant {
-    fn color(&self, reflected: Xyz, taken: &[Xyz]) -> Xyz {
-        let absorbers = self.absorbers.iter().filter(|(_, share)| *share > 0.0);
-        let absorbed: Xyz = absorbers.map(|&(curve, share)| share * taken[curve]).sum();
-        reflected - absorbed + self.emitted
-    }
+/// The color that absorbers take, where each curve alone would take `taken`.
+fn absorbed(absorbers: &[(usize, f64); 2], taken: &[Xyz]) -> Xyz {
+    let absorbers = absorbers.iter().filter(|(_, share)| *share > 0.0);
+    absorbers.map(|&(curve, share)| share * taken[curve]).sum()
 }
 
 /// Rising and falling edges over the visible range, of peaks and valleys of each width.
@@ -283,12 +289,9 @@ fn level_at(slope_per_nm: f64, signed_width_nm: f64) -> f64 {
 fn variants(model: &ModelOnGrid, sums: &Sums) -> (Vec<Variant>, Vec<Lanes>) {
     match model.model() {
         Model::Reflectance => {
-            let (absorbers, emitted) = ([(0, 0.0); 2], Xyz::default());
+            let (filter, emitted) = (Filter::Absorbers([(0, 0.0); 2]), Xyz::default());
             let fluorescence = Fluorescence::None;
-            (
-                vec![Variant { bucket: 0, fluorescence, absorbers, passed: None, emitted }],
-                Vec::new(),
-            )
+            (vec![Variant { bucket: 0, fluorescence, filter, emitted }], Vec::new())
         }
         Model::Dyes(dyes) => (dye_variants(model, dyes), Vec::new()),
         Model::Film(film) => (film_variants(model, film, sums), Vec::new()),
@@ -311,8 +314,7 @@ fn dye_variants(model: &ModelOnGrid, dyes: &DyeModel) -> Vec<Variant> {
                 variants.push(Variant {
                     bucket: 2 * first + usize::from(weight >= 0.5),
                     fluorescence: Fluorescence::Dyes { first, weight, concentration },
-                    absorbers,
-                    passed: None,
+                    filter: Filter::Absorbers(absorbers),
                     emitted: concentration * emitted,
                 });
             }
@@ -333,8 +335,8 @@ fn film_variants(model: &ModelOnGrid, film: &FilmModel, sums: &Sums) -> Vec<Vari
         let fluorescence = Fluorescence::film(first, second);
         let Fluorescence::Film { dyes, densities } = fluorescence else { return };
         let emitted = Xyz::from(model.emitted_by_film(dyes, densities, &mut passed).color);
-        let passed = Some(sums.lanes(&passed));
-        variants.push(Variant { bucket, fluorescence, absorbers: [(0, 0.0); 2], passed, emitted });
+        let filter = Filter::Film(Box::new(sums.lanes(&passed)));
+        variants.push(Variant { bucket, fluorescence, filter, emitted });
     };
     let mut bucket = 0;
     for i in 0..count {
@@ -375,8 +377,7 @@ fn bell_variants(
                         stokes_shift_nm,
                         concentration,
                     },
-                    absorbers: [(lanes.len() - 1, concentration), (0, 0.0)],
-                    passed: None,
+                    filter: Filter::Absorbers([(lanes.len() - 1, concentration), (0, 0.0)]),
                     emitted: concentration * emitted,
                 });
             }

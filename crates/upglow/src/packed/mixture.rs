@@ -363,7 +363,7 @@ impl<'t> PackedMixture<'t> {
         match &self.model.model {
             Model::Reflectance => [none; 2],
             Model::Dyes(_) | Model::Film(_) => {
-                let accounting = self.model.accounting();
+                let accounting = self.model.model.accounting().unwrap_or_default();
                 let yielded = self.per_lobe(simd, rule, |dye| dye.quantum_yield);
                 let means_nm = match accounting {
                     Accounting::Energy => [none; 2],

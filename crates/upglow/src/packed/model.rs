@@ -2,7 +2,7 @@
 
 use fearless_simd::Level;
 
-use crate::material::formula::{Accounting, Mixing};
+use crate::material::formula::Mixing;
 use crate::material::model::Model;
 use crate::packed::bells::Bells;
 use crate::packed::curve_table::CurveTable;
@@ -40,17 +40,6 @@ impl Rule {
 }
 
 impl PackedModel {
-    /// What is conserved when dyes re-emit light.
-    #[inline(always)]
-    pub(crate) fn accounting(&self) -> Accounting {
-        match &self.model {
-            Model::Dyes(dyes) => dyes.options().accounting,
-            Model::Film(film) => film.accounting(),
-            Model::Analytic(bells) => bells.accounting(),
-            Model::Reflectance => Accounting::Energy,
-        }
-    }
-
     pub(crate) fn new(model: &Model) -> Self {
         let [absorption_bells, emission_bells] = Bells::of(model);
         let rule = match model {
