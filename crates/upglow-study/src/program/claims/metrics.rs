@@ -10,12 +10,13 @@ use crate::spread::Spread;
 const SOME_ARTIFACTS: f64 = 0.01;
 
 pub(super) fn claims(fields: &Fields) -> Vec<Claim> {
+    let [nearest_of_de76, nearest_of_de2000] = nearest(fields);
     vec![
         time(fields),
         time_of_eight_sweeps(fields),
         matched(fields),
-        nearest_of_de76(fields),
-        nearest_of_de2000(fields),
+        nearest_of_de76,
+        nearest_of_de2000,
         artifacts_of_de76(fields),
         artifacts_after_more_sweeps(fields),
         artifacts_of_de2000(fields),
@@ -106,43 +107,41 @@ fn misses_of_all(fields: &Fields) -> ([[f64; 2]; 3], usize) {
     (all.map(|field| [mean(field, 0), mean(field, 1)]), missed.len())
 }
 
-fn nearest_of_de76(fields: &Fields) -> Claim {
-    let ([rgb, de76, _], missed) = misses_of_all(fields);
-    Claim {
-        id: "de76-approximates-better",
+/// The claims that ΔE76 and ΔE00 approximate colors better than the RGB distance.
+fn nearest(fields: &Fields) -> [Claim; 2] {
+    let ([rgb, de76, de2000], missed) = misses_of_all(fields);
+    let claim = |name, found: [f64; 2], id, statement, measure| Claim {
+        id,
         section: "4.1",
-        statement: "ΔE76 finds better approximations of colors that cannot be shown",
-        measure: "mean difference from the color asked for, over the nodes that RGB, ΔE76 and ΔE00 \
-                  all miss, 4 sweeps",
+        statement,
+        measure,
         numbers: vec![
             Number::new("RGB", rgb[0], "ΔE00", 2),
-            Number::new("ΔE76", de76[0], "ΔE00", 2),
+            Number::new(name, found[0], "ΔE00", 2),
             Number::new("RGB", rgb[1], "ΔE76", 2),
-            Number::new("ΔE76", de76[1], "ΔE76", 2),
+            Number::new(name, found[1], "ΔE76", 2),
             Number::count("nodes", missed),
         ],
-        verdict: Verdict::holds_if((0..2).all(|k| de76[k] < rgb[k])),
+        verdict: Verdict::holds_if((0..2).all(|k| found[k] < rgb[k])),
         why: NEARER,
-    }
-}
-
-fn nearest_of_de2000(fields: &Fields) -> Claim {
-    let ([rgb, _, de2000], missed) = misses_of_all(fields);
-    Claim {
-        id: "de2000-approximates-better",
-        section: "4.1",
-        statement: "ΔE00 finds better approximations of colors that cannot be shown",
-        measure: "the same for ΔE00",
-        numbers: vec![
-            Number::new("RGB", rgb[0], "ΔE00", 2),
-            Number::new("ΔE00", de2000[0], "ΔE00", 2),
-            Number::new("RGB", rgb[1], "ΔE76", 2),
-            Number::new("ΔE00", de2000[1], "ΔE76", 2),
-            Number::count("nodes", missed),
-        ],
-        verdict: Verdict::holds_if((0..2).all(|k| de2000[k] < rgb[k])),
-        why: NEARER,
-    }
+    };
+    [
+        claim(
+            "ΔE76",
+            de76,
+            "de76-approximates-better",
+            "ΔE76 finds better approximations of colors that cannot be shown",
+            "mean difference from the color asked for, over the nodes that RGB, ΔE76 and ΔE00 all \
+             miss, 4 sweeps",
+        ),
+        claim(
+            "ΔE00",
+            de2000,
+            "de2000-approximates-better",
+            "ΔE00 finds better approximations of colors that cannot be shown",
+            "the same for ΔE00",
+        ),
+    ]
 }
 
 /// The rule of both claims about approximations.
