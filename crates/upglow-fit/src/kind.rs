@@ -3,7 +3,7 @@
 use upglow::{Cube, FitRecord, Mixture, Node};
 use upglow_color::choices;
 
-use crate::fit::EXACT;
+use crate::fit::{EXACT, Fit};
 
 /// What a color needed, under the limits that a cube was fitted with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -49,6 +49,12 @@ impl MaterialKind {
     pub fn of_node(node: &Node, cube: &Cube) -> Self {
         let glows = node.material(cube.model()).fluorescence.dose() > 0.0;
         Self::of([(node.edge().slope_per_nm.abs(), glows)], node.de2000.into(), cube.fit())
+    }
+
+    /// The kind of a fit under the limits of `record`.
+    pub fn of_fit(fit: &Fit, record: &FitRecord) -> Self {
+        let glows = fit.fluorescence.dose() > 0.0;
+        Self::of([(fit.reflectance.slope_per_nm.abs(), glows)], fit.de2000, record)
     }
 
     /// The kind of a mixture of materials that were fitted as `fit` says, at this CIEDE2000 from its

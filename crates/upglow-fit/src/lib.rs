@@ -55,6 +55,8 @@ pub use options::{FitOptions, FitOptionsError, GivenOptions, Method};
 pub use polish::Polisher;
 pub use preset::Preset;
 pub use progress::{Progress, Unwatched, Watch};
-pub use seams::{Seam, seams};
+pub use seams::{Seam, seams, ultraviolet_lamp};
 pub use standing_table::{Estimate, StandingTable};
-pub use verify::{Check, Offender, Stopped, Verdict, VerifyOptions, VerifyReport, verify};
+pub use verify::{
+    Check, Offender, Stopped, Verdict, VerifyOptions, VerifyReport, random_rgb, verify,
+};

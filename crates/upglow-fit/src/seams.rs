@@ -41,11 +41,14 @@ const LEAST_STEP: f64 = 0.02;
 /// The lights under which seams are measured: incandescent light, a white LED, and an ultraviolet lamp.
 pub(crate) fn lights() -> [Illuminant; 3] {
     let named = |name| Illuminant::named(name).expect("it is built in");
-    [named("A"), named("LED-B3"), ultraviolet()]
+    [named("A"), named("LED-B3"), ultraviolet_lamp()]
 }
 
-/// A lamp at 365 nm, 20 nm wide, with a twentieth of daylight: each has about half of the power.
-fn ultraviolet() -> Illuminant {
+/// A lamp at 365 nm, 20 nm wide at half of its greatest power, with a twentieth of daylight.
+///
+/// The line is a Gaussian of power 100 at its peak; D65, which has power 100 at 560 nm, is multiplied by 0.05.
+/// Each has about half of the power.
+pub fn ultraviolet_lamp() -> Illuminant {
     let line = Illuminant::line("line", 365.0, 20.0).expect("it is a line");
     let daylight = Illuminant::named("D65").expect("it is built in");
     let power = line.power().values().iter().zip(daylight.power().values());

@@ -10,10 +10,10 @@ mod subjects;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
-use upglow::{Cube, DyeCurves, Interpolation, Model, Node};
+use upglow::{Cube, DyeCurves, Interpolation, Model};
 
 pub use report::{Check, Offender, Stopped, Verdict, VerifyReport};
-pub(crate) use subjects::random_rgb;
+pub use subjects::random_rgb;
 
 use crate::cube::Spread;
 use crate::fitter::Fitter;
@@ -106,19 +106,18 @@ const DOSES_COMPARED: usize = 64;
 fn dose_over_least(cube: &Cube) -> Option<Check> {
     let options = FitOptions::try_from(cube.fit()).ok()?;
     let fitter = Fitter::new(cube.contract(), cube.model(), options).ok()?;
-    let kind_of = |node: &Node| MaterialKind::of_node(node, cube);
     let nodes = cube.nodes();
-    let dyed: Vec<usize> =
-        (0..nodes.len()).filter(|&i| kind_of(&nodes[i]) == MaterialKind::Dyed).collect();
+    let is_dyed = |&i: &usize| MaterialKind::of_node(&nodes[i], cube) == MaterialKind::Dyed;
+    let dyed: Vec<usize> = (0..nodes.len()).filter(is_dyed).collect();
     let step = dyed.len().div_ceil(DOSES_COMPARED).max(1);
     let ratios: Vec<f64> = dyed
         .iter()
         .step_by(step)
         .filter_map(|&index| {
             let fit = fitter.fit(cube.node_rgb(index)).ok()?;
-            let alone = Node::new(fit.reflectance, fit.fluorescence, fit.de2000);
             let dose = cube.node_material(index).fluorescence.dose();
-            (kind_of(&alone) == MaterialKind::Dyed).then(|| dose / fit.fluorescence.dose())
+            let is_dyed = MaterialKind::of_fit(&fit, cube.fit()) == MaterialKind::Dyed;
+            is_dyed.then(|| dose / fit.fluorescence.dose())
         })
         .collect();
     let about =

@@ -1,8 +1,10 @@
 //! The rule of choosing: what gets a dye, how much of it, and what is steeper than its limit.
 
 use upglow::{Bispectral, Fluorescence, Mixture};
-use upglow_color::{Adaptation, Contract, LinearRgb, Matrix3, RgbSpace};
-use upglow_fit::{CubeSummary, Fit, FitOptions, Fitter, Method, Preset, Unwatched, build_cube};
+use upglow_color::{Contract, LinearRgb, RgbSpace, srgb_decoded};
+use upglow_fit::{
+    CubeSummary, Fit, FitOptions, Fitter, Method, Preset, Unwatched, build_cube, random_rgb,
+};
 
 /// The limits of the preset `natural`.
 const ALONE_PER_NM: f64 = 0.065;
@@ -13,22 +15,9 @@ fn natural(contract: &Contract) -> Fitter {
     Fitter::new(contract, &Preset::Natural.model(), options).expect("a preset is in range")
 }
 
-/// Pseudo-random numbers in 0..1, by Steele's `SplitMix64`.
-fn numbers(seed: u64) -> impl FnMut() -> f64 {
-    let mut state = seed;
-    move || {
-        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = state;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-}
-
-/// Linear components of 8-bit sRGB codes.
-fn decoded(code: f64) -> f64 {
-    let v = (code * 256.0).floor() / 255.0;
-    if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
+/// A color of random 8-bit sRGB codes, linear.
+fn random_srgb(seed: u64, index: usize) -> [f64; 3] {
+    random_rgb(seed, index).0.map(|v| srgb_decoded((v * 256.0).floor() / 255.0))
 }
 
 fn assert_reflects_only(fit: &Fit, rgb: [f64; 3]) {
@@ -43,17 +32,15 @@ fn no_srgb_color_has_a_dye() {
     const NEARLY_BLACK: f64 = 5.0;
     let space = RgbSpace::named("srgb").unwrap();
     let fitter = natural(&Contract { space, ..Contract::default() });
-    let mut next = numbers(1);
     let corners = (0..8).map(|i| [i & 1, i >> 1 & 1, i >> 2 & 1].map(f64::from));
     let faces = (0..600).map(|i| {
         let mut rgb = [(); 3].map(|()| 1.2 * f64::from(i % 30) / 36.0);
         rgb[i as usize % 3] = f64::from(i / 300);
         rgb
     });
-    let mut random = numbers(2);
-    let random = (0..2000).map(|_| [(); 3].map(|()| decoded(random())));
+    let random = (0..2000).map(|i| random_srgb(2, i));
     let edges = (0..600).map(|i| {
-        let mut rgb = [next(), next(), next()].map(decoded);
+        let mut rgb = random_srgb(1, i);
         rgb[i % 3] = 0.0;
         rgb
     });
@@ -64,48 +51,6 @@ fn no_srgb_color_has_a_dye() {
             assert_reflects_only(&fitter.fit(color).unwrap(), rgb);
         }
     }
-}
-
-#[test]
-fn no_color_of_pointers_gamut_has_a_dye() {
-    /// Chromaticity of illuminant C, and that of D65 in the contract's sums.
-    const C: [f64; 3] = [0.980_740, 1.0, 1.182_320];
-    let contract = Contract {
-        space: RgbSpace::named("xyz").unwrap(),
-        adaptation: Adaptation::None,
-        ..Contract::default()
-    };
-    let fitter = natural(&contract);
-    let white = fitter.model().colorimetry().white().0;
-    let text = include_str!("data/pointer_gamut.csv");
-    let rows = text.lines().filter(|line| line.starts_with(|c: char| c.is_ascii_digit()));
-    let mut count = 0;
-    for row in rows {
-        let lch: Vec<f64> = row.split(',').map(|cell| cell.parse().unwrap()).collect();
-        let hue = lch[2].to_radians();
-        let y = (lch[0] + 16.0) / 116.0;
-        let f = [y + lch[1] * hue.cos() / 500.0, y, y - lch[1] * hue.sin() / 200.0];
-        let xyz: [f64; 3] = std::array::from_fn(|k| C[k] * uncompressed(f[k]));
-        let rgb = adapted(xyz, C, white);
-        assert_reflects_only(&fitter.fit(LinearRgb(rgb)).unwrap(), rgb);
-        count += 1;
-    }
-    assert_eq!(count, 576);
-}
-
-/// The inverse of CIELAB's compression.
-fn uncompressed(f: f64) -> f64 {
-    let linear = 3.0 * (6.0_f64 / 29.0).powi(2) * (f - 4.0 / 29.0);
-    if f > 6.0 / 29.0 { f.powi(3) } else { linear.max(0.0) }
-}
-
-/// A color under another white, after Bradford.
-fn adapted(xyz: [f64; 3], from: [f64; 3], to: [f64; 3]) -> [f64; 3] {
-    let cones =
-        Matrix3([[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]]);
-    let [before, after, color] = [from, to, xyz].map(|xyz| cones * xyz);
-    let scaled: [f64; 3] = std::array::from_fn(|k| color[k] * after[k] / before[k]);
-    (cones.inverse().expect("it has one") * scaled).map(|v| v.max(0.0))
 }
 
 #[test]
@@ -130,10 +75,10 @@ fn under_dyes_no_slope_is_steeper_than_its_limit_unless_nothing_else_matches() {
     let hard = FitOptions { relaxed: false, ..relaxed };
     let [relaxed, hard] =
         [relaxed, hard].map(|options| Fitter::new(&contract, &model, options).unwrap());
-    let mut next = numbers(3);
     let (mut steep, mut dyed) = (0, 0);
-    for _ in 0..150 {
-        let rgb = LinearRgb([next(), next().powi(3), next().powi(3)]);
+    for i in 0..150 {
+        let LinearRgb([r, g, b]) = random_rgb(3, i);
+        let rgb = LinearRgb([r, g.powi(3), b.powi(3)]);
         let (free, held) = (relaxed.fit(rgb).unwrap(), hard.fit(rgb).unwrap());
         let glows = held.fluorescence.dose() > 0.0;
         let limit = if glows { UNDER_DYES_PER_NM } else { ALONE_PER_NM };
@@ -185,9 +130,11 @@ fn the_dose_is_near_the_least_of_many_starts() {
     let [ours, all] =
         [options, exhaustive].map(|options| Fitter::new(&contract, &model, options).unwrap());
     let mut ratios: Vec<f64> = Vec::new();
-    let mut next = numbers(4);
-    while ratios.len() < 12 {
-        let rgb = LinearRgb([next(), next().powi(3), next()]);
+    for LinearRgb([r, g, b]) in (0..).map(|i| random_rgb(4, i)) {
+        if ratios.len() == 12 {
+            break;
+        }
+        let rgb = LinearRgb([r, g.powi(3), b]);
         let fit = ours.fit(rgb).unwrap();
         let is_within = fit.reflectance.slope_per_nm.abs() <= UNDER_DYES_PER_NM;
         if fit.fluorescence.dose() == 0.0 || fit.de2000 > 0.01 || !is_within {

@@ -60,8 +60,8 @@ impl Subjects {
     }
 }
 
-/// Random color number `index` for a seed, each component in 0..1.
-pub(crate) fn random_rgb(seed: u64, index: usize) -> LinearRgb {
+/// Pseudo-random color number `index` for a seed, each component in 0..1.
+pub fn random_rgb(seed: u64, index: usize) -> LinearRgb {
     let first = (index as u64).wrapping_mul(3);
     LinearRgb([1, 2, 3].map(|k| unit(split_mix(seed, first.wrapping_add(k)))))
 }

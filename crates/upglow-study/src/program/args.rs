@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
 use upglow::Cube;
-use upglow_terminal::{Console, Threads, in_range, word};
+use upglow_terminal::{Console, Threads, count, in_range, word};
 
 use crate::figures::{Display, LAST_FIGURE};
 
@@ -24,6 +24,11 @@ pub(crate) enum Command {
     Figures(FiguresArgs),
     /// Measure the claims of the paper and print a Markdown report; takes minutes
     Reproduce(ReproduceArgs),
+    /// Measure how materials made from the color of real surfaces look under other lights, beside the surfaces
+    Relight(RelightArgs),
+    /// Measure which colors get a dye by the rule of choosing, and how much more than the least; takes
+    /// minutes
+    Rule(RuleArgs),
 }
 
 #[derive(Clone, Debug, clap::Args)]
@@ -57,6 +62,28 @@ pub(crate) struct ReproduceArgs {
     /// Number of nodes along each axis of the cubes, 2 to 256; the paper uses 32
     #[arg(long, default_value = "32", value_name = "N", value_parser = in_range(Cube::RESOLUTIONS))]
     pub(crate) resolution: usize,
+    #[command(flatten)]
+    pub(crate) threads: Threads,
+}
+
+#[derive(Clone, Debug, clap::Args)]
+pub(crate) struct RelightArgs {
+    /// Folder of measured fluorescent materials, as .BFC files of the spectrofluorimeter BFC-450; without it
+    /// only surfaces without fluorescence are compared
+    #[arg(long, value_name = "FOLDER")]
+    pub(crate) bispectral: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) threads: Threads,
+}
+
+#[derive(Clone, Debug, clap::Args)]
+pub(crate) struct RuleArgs {
+    /// Number of nodes along each axis of the cubes, 2 to 256
+    #[arg(long, default_value = "32", value_name = "N", value_parser = in_range(Cube::RESOLUTIONS))]
+    pub(crate) resolution: usize,
+    /// Number of nodes with dyes for which the least dose is searched for exhaustively
+    #[arg(long, default_value = "500", value_name = "N", value_parser = count::<usize>)]
+    pub(crate) nodes: usize,
     #[command(flatten)]
     pub(crate) threads: Threads,
 }

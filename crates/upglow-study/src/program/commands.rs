@@ -1,7 +1,9 @@
 //! The commands, one per file.
 
 mod figures;
+mod relight;
 mod reproduce;
+mod rule;
 
 use upglow_fit::BuildError;
 use upglow_terminal::Failure;
@@ -13,6 +15,8 @@ pub(crate) fn run(Args { command, console }: Args) -> Result<(), Failure> {
     match command {
         Command::Figures(args) => figures::run(&args, &console),
         Command::Reproduce(args) => reproduce::run(&args, &console),
+        Command::Relight(args) => relight::run(&args, &console),
+        Command::Rule(args) => rule::run(&args, &console),
     }
 }
 

@@ -10,8 +10,12 @@ mod commands;
 mod cubes;
 mod field;
 mod figures;
+mod lights;
 mod raster;
+mod relight;
 mod report;
+mod rule;
+mod samples;
 mod spread;
 mod svg;
 
@@ -26,5 +30,7 @@ mod tests {
     mod claims;
     mod definitions;
     mod figures;
+    mod relight;
     mod reradiation;
+    mod rule;
 }

@@ -1,34 +1,17 @@
 //! Whether materials fitted to a color look like a measured fluorescent material of that color under other
 //! lights.
 
-use upglow::{Material, Mixing, Model, ModelOnGrid};
-use upglow_color::{Colorimetry, Contract, Illuminant, LinearRgb, Metric, Spectrum, ciede2000};
-use upglow_fit::{FitOptions, Fitter, Method};
+use upglow::{Mixing, Model};
+use upglow_color::Metric;
+use upglow_fit::{FitOptions, Method};
 use upglow_study::konig2020;
 
 use super::{ANALYTIC_WIDTHS, Claim, Number, Verdict};
 use crate::bispectral::Measured;
+use crate::lights::smooth_lights;
+use crate::relight::{Relit, Way};
+use crate::samples::SampleSet;
 use crate::spread::Spread;
-
-/// Below this wavelength, nm, the last light has no power: that of D65 behind a filter that keeps out the
-/// ultraviolet.
-const CUT_NM: f64 = 400.0;
-
-/// The lights that the materials are not fitted under.
-fn other_lights() -> [Illuminant; 3] {
-    let named = |name| Illuminant::named(name).expect("the light is built in");
-    let daylight = named("D65");
-    let power = daylight.power();
-    let samples = power.grid().wavelengths_nm().zip(power.values());
-    let cut = samples.map(|(nm, &power)| if nm < CUT_NM { 0.0 } else { power }).collect();
-    let cut = Spectrum::new(power.grid(), cut).expect("it has the samples of D65");
-    let cut = Illuminant::from_spectrum("D65 from 400 nm", &cut).expect("it is visible");
-    [named("A"), named("E"), cut]
-}
-
-fn under(light: Illuminant) -> Colorimetry {
-    Contract { illuminant: light, ..konig2020::contract() }.on(Measured::GRID)
-}
 
 pub(super) fn claim(measured: &[Measured]) -> Claim {
     let claim = Claim {
@@ -115,28 +98,10 @@ struct Differences {
 
 impl Differences {
     fn of(model: &Model, options: FitOptions, measured: &[Measured]) -> Self {
-        let contract = konig2020::contract();
-        let fitter = Fitter::new(&contract, model, options).expect("the options are in range");
-        let d65 = contract.on(Measured::GRID);
-        let fitted = |measured: &Measured| {
-            // The nearest color that can be asked for.
-            let rgb = d65.rgb_from_xyz(measured.color(&d65));
-            let rgb = LinearRgb(rgb.0.map(|value| value.clamp(0.0, Fitter::BRIGHTEST)));
-            fitter.fit(rgb).expect("the color is in range").material()
-        };
-        let fits: Vec<Material> = measured.iter().map(fitted).collect();
-        let difference = |light: &Colorimetry| -> Vec<f64> {
-            let sums = ModelOnGrid::new(model, light);
-            let pairs = measured.iter().zip(&fits);
-            let colors = pairs.map(|(measured, &fit)| [measured.color(light), sums.color(fit)]);
-            colors
-                .map(|ab| ab.map(|xyz| light.lab_from_xyz(xyz)))
-                .map(|[a, b]| ciede2000(a, b))
-                .collect()
-        };
-        let others = other_lights().map(|light| difference(&under(light)));
-        let means = (0..measured.len()).map(|i| Spread::of(others.iter().map(|of| of[i])).mean);
-        Self { d65: difference(&d65), others: means.collect() }
+        let way = Way::try_new(model.name(), konig2020::contract(), model, options)
+            .expect("the options are in range");
+        let relit = Relit::of(&SampleSet::fluorescent(measured), &way, &smooth_lights());
+        Self { others: relit.means(), d65: relit.home }
     }
 }
 
