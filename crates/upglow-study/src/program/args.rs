@@ -8,7 +8,7 @@ use upglow_terminal::{Console, Threads, count, in_range, word};
 
 use crate::figures::{Display, LAST_FIGURE};
 
-/// Computes the figures and claims of König et al. 2020.
+/// Computes the figures and claims of König et al. 2020, and what the default preset gives on measured surfaces.
 #[derive(Clone, Debug, Parser)]
 #[command(name = "upglow-study", version, max_term_width = 100)]
 pub(crate) struct Args {

@@ -1,6 +1,8 @@
-//! The program `upglow-study`: the figures and claims of König et al. 2020, computed.
+//! The program `upglow-study`: the figures and claims of König et al. 2020, computed, and what the default
+//! preset gives on measured surfaces.
 //!
-//! A command ([`commands`]) computes [`figures`] or [`claims`] and writes them. The numbers that the
+//! A command ([`commands`]) computes [`figures`], [`claims`], how surfaces look [`relight`]ed, or the effects of
+//! the [`rule`] of choosing, and writes them. The numbers that the
 //! Python package needs too are in the library of this crate.
 
 mod args;
