@@ -100,3 +100,29 @@ fn the_claims_are_printed_as_one_json_document() {
     );
     assert_eq!(printed.matches('\n').count(), 1);
 }
+
+#[test]
+fn surfaces_under_other_lights_are_tables_or_one_json_document() {
+    let folder = tempfile::tempdir().unwrap();
+    let printed = done(folder.path(), "relight");
+    let rows = printed.lines().filter(|line| line.starts_with("| natural |"));
+    assert_eq!(rows.count(), 2, "{printed}");
+    let printed = done(folder.path(), "relight --json");
+    assert!(printed.starts_with(r#"{"sets":[{"samples":"99 object colors","count":99,"#));
+    assert_eq!(printed.matches('\n').count(), 1);
+    let refused = refused(folder.path(), 1, "relight --bispectral absent");
+    assert!(refused.contains("expected a folder of BFC-450 matrices"), "{refused}");
+}
+
+#[test]
+fn the_effects_of_the_rule_do_not_depend_on_the_number_of_threads() {
+    let folder = tempfile::tempdir().unwrap();
+    let [one, two] = [1, 2].map(|threads| {
+        let words = format!("rule --resolution 4 --nodes 3 --threads {threads}");
+        done(folder.path(), &words)
+    });
+    assert!(one.contains("| fitted by themselves | "), "{one}");
+    assert_eq!(one, two);
+    let refused = refused(folder.path(), 2, "rule --resolution 1");
+    assert_eq!(refused, "upglow-study: --resolution: 1, expected a whole number from 2 to 256\n");
+}
