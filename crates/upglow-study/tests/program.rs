@@ -118,7 +118,7 @@ fn surfaces_under_other_lights_are_tables_or_one_json_document() {
 fn the_effects_of_the_rule_do_not_depend_on_the_number_of_threads() {
     let folder = tempfile::tempdir().unwrap();
     let [one, two] = [1, 2].map(|threads| {
-        let words = format!("rule --resolution 4 --nodes 3 --threads {threads}");
+        let words = format!("rule --resolution 4 --nodes 3 --colors 100 --threads {threads}");
         done(folder.path(), &words)
     });
     assert!(one.contains("| fitted by themselves | "), "{one}");

@@ -81,6 +81,9 @@ pub(crate) struct RuleArgs {
     /// Number of nodes along each axis of the cubes, 2 to 256
     #[arg(long, default_value = "32", value_name = "N", value_parser = in_range(Cube::RESOLUTIONS))]
     pub(crate) resolution: usize,
+    /// Number of random 8-bit colors of sRGB
+    #[arg(long, default_value = "20000", value_name = "N", value_parser = count::<usize>)]
+    pub(crate) colors: usize,
     /// Number of nodes with dyes for which the least dose is searched for exhaustively
     #[arg(long, default_value = "500", value_name = "N", value_parser = count::<usize>)]
     pub(crate) nodes: usize,

@@ -17,8 +17,6 @@ use crate::relight::Way;
 use crate::samples::{SampleSet, pointers_border};
 use crate::spread::Spread;
 
-/// How many random colors of sRGB are drawn.
-const RANDOM_COLORS: usize = 20_000;
 /// Seed of the random colors and nodes.
 const SEED: u64 = 0;
 
@@ -69,15 +67,15 @@ pub(crate) fn cube(
     build_cube(&contract_of(space), &preset.model(), preset.options(), resolution, watch)
 }
 
-/// The colors of surfaces and of displays under D65, by name.
-pub(crate) fn colors() -> [(&'static str, Vec<Xyz>); 4] {
+/// The colors of surfaces, and random ones of sRGB, under D65, by name.
+pub(crate) fn colors(random: usize) -> [(&'static str, Vec<Xyz>); 4] {
     let d65 = Contract::default();
     let [objects, paints] = [SampleSet::object_colors(), SampleSet::paints()].map(|set| {
         let colorimetry = d65.on(set.grid);
         (set.name, set.samples.iter().map(|sample| sample.color(&colorimetry)).collect())
     });
     let srgb = contract_of("srgb").on(Grid::FIT);
-    let random = random_srgb().map(|rgb| srgb.xyz_from_rgb(rgb)).collect();
+    let random = random_srgb(random).map(|rgb| srgb.xyz_from_rgb(rgb)).collect();
     [
         objects,
         paints,
@@ -94,10 +92,10 @@ pub(crate) fn dyed_alone((name, colors): &(&'static str, Vec<Xyz>), way: &Way) -
 }
 
 /// Random 8-bit colors of sRGB.
-fn random_srgb() -> impl Iterator<Item = LinearRgb> {
+fn random_srgb(count: usize) -> impl Iterator<Item = LinearRgb> {
     const CODES: f64 = 256.0;
     let decoded = |v: f64| srgb_decoded((v * CODES).floor() / (CODES - 1.0));
-    (0..RANDOM_COLORS).map(move |index| LinearRgb(random_rgb(SEED, index).0.map(decoded)))
+    (0..count).map(move |index| LinearRgb(random_rgb(SEED, index).0.map(decoded)))
 }
 
 /// The nodes of a cube for sRGB.
@@ -110,12 +108,12 @@ pub(crate) fn dyed_nodes(srgb: &Cube) -> Dyed {
     Dyed::new("nodes of the sRGB cube", &found.collect::<Vec<_>>())
 }
 
-/// The random colors of sRGB looked up in a cube for a wider space: a mixture has a dye if one of its
+/// Random colors of sRGB looked up in a cube for a wider space: a mixture has a dye if one of its
 /// materials has.
-pub(crate) fn dyed_by_look_up(wide: &Cube) -> Dyed {
+pub(crate) fn dyed_by_look_up(wide: &Cube, count: usize) -> Dyed {
     let [srgb, space] =
         [&contract_of("srgb"), wide.contract()].map(|contract| contract.on(Grid::FIT));
-    let found = random_srgb().map(|rgb| {
+    let found = random_srgb(count).map(|rgb| {
         let color = srgb.xyz_from_rgb(rgb);
         let rgb = space.rgb_from_xyz(color).0.map(|v| v.clamp(0.0, 1.0));
         let mixture = wide.lookup(LinearRgb(rgb), Interpolation::Blend).expect("it is in range");

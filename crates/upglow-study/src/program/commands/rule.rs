@@ -57,8 +57,8 @@ pub(super) fn run(args: &RuleArgs, console: &Console) -> Result<(), Failure> {
 }
 
 fn measure(args: &RuleArgs, bar: &Bar) -> Result<RuleReport, BuildError> {
-    let resolution = args.resolution;
-    let colors = colors();
+    let RuleArgs { resolution, colors: random, nodes, .. } = *args;
+    let colors = colors(random);
     let alone = ways(&contract_of_every_color()).into_iter().map(|way| {
         let dyed = colors.iter().map(|colors| dyed_alone(colors, &way)).collect();
         WayReport { way: way.name, dyed }
@@ -66,15 +66,15 @@ fn measure(args: &RuleArgs, bar: &Bar) -> Result<RuleReport, BuildError> {
     let alone = alone.collect();
     let mut in_cubes = Vec::new();
     for preset in [Preset::Konig2020, Preset::Natural] {
-        let nodes = dyed_nodes(&cube(preset, "srgb", resolution, bar)?);
+        let all = dyed_nodes(&cube(preset, "srgb", resolution, bar)?);
         let wide = cube(preset, "acescg", resolution, bar)?;
-        let dyed = vec![nodes, dyed_by_look_up(&wide)];
+        let dyed = vec![all, dyed_by_look_up(&wide, random)];
         in_cubes.push((WayReport { way: preset.to_string(), dyed }, wide));
     }
     let (in_cubes, mut wide): (_, Vec<_>) = in_cubes.into_iter().unzip();
     let natural = wide.pop().expect("the preset natural is the last");
     let Doses { alone: by_itself, in_cube, missed_alone, missed_exhaustively } =
-        doses(&natural, Preset::Natural, args.nodes, bar)?;
+        doses(&natural, Preset::Natural, nodes, bar)?;
     let doses = vec![
         DoseReport::new("fitted by themselves", by_itself),
         DoseReport::new("in the cube", in_cube),

@@ -18,11 +18,9 @@ fn known_surfaces_and_srgb_colors_are_matched_without_a_dye() {
     const NEARLY_BLACK: f64 = 5.0;
     let way = Way::preset(Preset::Natural, contract_of_every_color());
     let white = Contract::default().on(Grid::FIT).white();
-    for (name, colors) in colors() {
+    for (name, colors) in colors(2000) {
         let is_srgb = name.contains("sRGB");
-        // A tenth of the random colors are enough where time counts.
-        let step = if is_srgb { 10 } else { 1 };
-        for color in colors.into_iter().step_by(step) {
+        for color in colors {
             if is_srgb && lab_from_xyz(color, white).l <= NEARLY_BLACK {
                 continue;
             }
@@ -41,21 +39,26 @@ fn no_node_of_a_small_cube_for_srgb_has_a_dye() {
 }
 
 #[test]
-fn the_dose_of_a_node_is_near_the_least() {
-    // Of the nodes of a small cube half have the least dose that is known, and three in four are within the
-    // factor of two that nearness to the neighbors may cost.
+fn half_of_the_nodes_have_nearly_the_least_dose() {
+    // Matches within 0.01 ΔE00 of the color differ in dose by a percent or two.
+    const NEARLY: f64 = 1.05;
     let cube = cube(Preset::Natural, "acescg", 9, &Unwatched).unwrap();
     let found = doses(&cube, Preset::Natural, 24, &Unwatched).unwrap();
-    assert!(found.alone.count + found.missed_alone == 24 && found.in_cube.count == 24);
-    assert!(found.alone.median < 1.05 && found.in_cube.median < 1.05, "{found:?}");
-    println!("{found:?}");
+    assert_eq!((found.alone.count + found.missed_alone, found.in_cube.count), (24, 24));
+    assert!(found.alone.median < NEARLY && found.in_cube.median < NEARLY, "{found:?}");
 }
 
-/// A blend in a cube for a wider space has the dyes of its corners.
 #[test]
 #[ignore = "slow"]
-fn slow_few_srgb_colors_have_a_dye_by_look_up_in_the_default_cube() {
-    const MOST_IN_100: usize = 7;
-    let found = dyed_by_look_up(&cube(Preset::Natural, "acescg", 32, &Unwatched).unwrap());
-    assert!(100 * found.dyed <= MOST_IN_100 * found.count, "{found:?}");
+fn slow_the_default_cube_gives_few_srgb_colors_a_dye_and_no_more_of_it_than_the_documents_say() {
+    // Half a unit of the last printed decimal.
+    const PRINTED: f64 = 0.005;
+    let cube = cube(Preset::Natural, "acescg", 32, &Unwatched).unwrap();
+    // A blend in a cube for a wider space has the dyes of its corners.
+    let found = dyed_by_look_up(&cube, 20_000);
+    assert!(100 * found.dyed <= 7 * found.count, "{found:?}");
+    let found = doses(&cube, Preset::Natural, 500, &Unwatched).unwrap();
+    for (spread, [p95, worst]) in [(found.alone, [1.65, 9.25]), (found.in_cube, [1.48, 2.26])] {
+        assert!(spread.p95 <= p95 + PRINTED && spread.max <= worst + PRINTED, "{spread:?}");
+    }
 }
