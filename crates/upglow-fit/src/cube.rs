@@ -59,6 +59,7 @@ pub fn build_cube(
 ) -> Result<Cube, BuildError> {
     let lattice = Lattice::try_new(resolution)?;
     let fitter = Fitter::new(contract, model, options)?;
+    fitter.prepare();
     let mut fits = fit_coarse_to_fine(&fitter, lattice, watch)?;
     let mut moved = vec![true; lattice.len()];
     for _ in 0..options.sweeps {

@@ -2,6 +2,7 @@
 
 use std::sync::atomic::Ordering;
 
+use rayon::prelude::*;
 use upglow::{Fluorescence, Model, ModelOnGrid};
 use upglow_color::{Contract, LinearRgb};
 
@@ -66,6 +67,15 @@ impl Fitter {
     /// The model and the contract, on the grid of the fit.
     pub fn model(&self) -> &ModelOnGrid {
         &self.context.model
+    }
+
+    /// Makes what fits by the rule need, on all threads; otherwise the first that needs it makes it.
+    pub(crate) fn prepare(&self) {
+        if self.is_film() {
+            self.with_dyes.par_iter().for_each(|stage| {
+                self.context.starts(stage);
+            });
+        }
     }
 
     /// How often residuals and derivatives were evaluated so far, in all fits.
@@ -140,20 +150,34 @@ impl Fitter {
     /// within theirs, else, if limits are relaxed, either of them within steeper ones; if all miss, the
     /// nearest.
     fn by_rule(&self, rgb: LinearRgb, around: &[Fit]) -> Fit {
-        let passive = self.job_at(rgb, &self.alone).reflectance();
+        let job = self.job_at(rgb, &self.alone);
+        let free = job.reflectance_without_limit();
+        let passive = job.reflectance_near(free);
+        if passive.is_matched() {
+            return passive;
+        }
+        let within = |stage: &Stage| {
+            let job = self.job_at(rgb, stage);
+            let is_steeper = stage.slope_limit_per_nm > self.alone.slope_limit_per_nm;
+            let alone = if is_steeper { job.reflectance_near(free) } else { passive };
+            if alone.is_matched() {
+                return alone;
+            }
+            better(Some(alone), self.glowing(&job, around, passive))
+        };
+        // Beside misses a color is probably missed too; then the widest limits alone show it.
+        if !around.is_empty() && !around.iter().any(Fit::is_matched) {
+            let widest = within(self.with_dyes.last().expect("there is at least one stage"));
+            if !widest.is_matched() {
+                return widest;
+            }
+        }
         let mut best = passive;
         for stage in &self.with_dyes {
+            best = better(Some(best), within(stage));
             if best.is_matched() {
                 break;
             }
-            let job = self.job_at(rgb, stage);
-            if stage.slope_limit_per_nm > self.alone.slope_limit_per_nm {
-                best = better(Some(best), job.reflectance());
-                if best.is_matched() {
-                    break;
-                }
-            }
-            best = better(Some(best), self.glowing(&job, around, passive));
         }
         best
     }

@@ -6,7 +6,6 @@ mod descent;
 mod emission;
 mod repeats;
 mod start;
-mod sums;
 mod texel;
 
 use upglow::{Cube, FitRecord, Fluorescence, LengthError, Model, Node};
@@ -15,11 +14,11 @@ use upglow_color::{LinearRgb, Matrix3};
 use crate::fitter::Fitter;
 use crate::options::{FitOptions, FitOptionsError};
 use crate::problem::parabola::UNIT_NM;
+use crate::problem::single_sums::SingleSums;
 use corner::{Corner, Corners};
 use emission::Emission;
 use repeats::Repeats;
 use start::{Family, Glow};
-use sums::SingleSums;
 use texel::Texel;
 
 /// Finds one material for each of millions of colors, for textures.
@@ -56,7 +55,6 @@ use texel::Texel;
 pub struct Polisher<'c> {
     cube: &'c Cube,
     fitter: Fitter,
-    sums: SingleSums,
     corners: Vec<Corner>,
     /// Emission of each pair of dyes.
     emissions: Vec<Emission>,
@@ -107,14 +105,12 @@ impl<'c> Polisher<'c> {
         let xyz_from_rgb = colorimetry.xyz_from_rgb_matrix();
         let per_white = diffuser.0.map(|v| 1.0 / v);
         let grays_are_flat = (white - diffuser).0.iter().all(|v| v.abs() < FLAT);
-        let sums = SingleSums::new(model);
         let slope_limits_per_nm = SlopeLimits {
             alone: fitter.alone.slope_limit_per_nm,
             under_dyes: fitter.main().slope_limit_per_nm,
         };
         Ok(Self {
             cube,
-            sums,
             corners,
             emissions,
             xyz_from_rgb,
@@ -123,6 +119,10 @@ impl<'c> Polisher<'c> {
             slope_limits_per_nm,
             fitter,
         })
+    }
+
+    fn sums(&self) -> &SingleSums {
+        &self.fitter.context.single_sums
     }
 
     /// One material for each RGB. It matches if the corners' materials match their colors, as far as

@@ -3,10 +3,11 @@
 use std::f64::consts::LN_10;
 
 use upglow::{AnalyticModel, DyeModel, Edge, Emitted, FilmModel, ModelOnGrid};
-use upglow_color::{Goal, Grid, Matrix3, Xyz};
+use upglow_color::{Goal, Matrix3, Xyz};
 
 pub(crate) mod parabola;
 pub(crate) mod shortest_step;
+pub(crate) mod single_sums;
 pub(crate) mod solver;
 pub(crate) mod sums;
 
@@ -14,8 +15,9 @@ use parabola::{
     Chart, MIDDLE_NM, UNIT_NM, edge_chart, edge_of, feature_chart, feature_numbers, free_chart,
     scaled, sigmoid_of, steepness,
 };
+use single_sums::{Shown, SingleLanes, SingleSums, in_double};
 use solver::{Jacobian, Residuals};
-use sums::{CLEAR, Lanes, Reflected, Sums, lanes_from};
+use sums::{CLEAR, Lanes, Sums, lanes_from};
 
 /// The coordinates of a reflectance in a fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -110,9 +112,6 @@ pub(crate) const CONCENTRATION: usize = 3;
 
 const FRACTION: [f64; 2] = [0.0, 1.0];
 
-/// Wavelengths of the grid of fits.
-const MOST_SAMPLES: usize = Grid::FIT.len();
-
 /// Residuals of a color, and their derivatives from those of the color.
 fn residuals_of<const N: usize>(
     goal: &Goal,
@@ -125,8 +124,8 @@ fn residuals_of<const N: usize>(
 }
 
 /// Derivatives of the color with respect to the shape's coordinates.
-fn by_shape<const K: usize>(reflected: &Reflected<K>, jacobian: [[f64; 3]; 3]) -> [Xyz; 3] {
-    let by_parabola = Matrix3::from_columns(reflected.by_parabola.map(|by| by.0));
+fn by_shape(by_parabola: [Xyz; 3], jacobian: [[f64; 3]; 3]) -> [Xyz; 3] {
+    let by_parabola = Matrix3::from_columns(by_parabola.map(|by| by.0));
     [0, 1, 2].map(|v| Xyz(by_parabola * [0, 1, 2].map(|m| jacobian[m][v])))
 }
 
@@ -144,7 +143,7 @@ impl Residuals<3, 3> for PassiveProblem<'_> {
     fn eval(&self, x: &[f64; 3]) -> ([f64; 3], Jacobian<3, 3>) {
         let (parabola, jacobian) = self.shape.chart(*x);
         let reflected = self.sums.reflect(parabola, &CLEAR, []);
-        let derivatives = by_shape(&reflected, jacobian).map(|by| by * self.exposure);
+        let derivatives = by_shape(reflected.by_parabola, jacobian).map(|by| by * self.exposure);
         residuals_of(&self.goal, reflected.color * self.exposure, derivatives)
     }
 
@@ -175,7 +174,7 @@ impl Residuals<3, 5> for DyeProblem<'_> {
         let Emitted { color: emitted, derivatives: [emitted_by_w] } =
             self.model.emitted_by_dyes(self.dyes, self.first, w);
         let (emitted, emitted_by_w) = (Xyz::from(emitted), Xyz::from(emitted_by_w));
-        let [by_s0, by_s1, by_s2] = by_shape(&reflected, jacobian);
+        let [by_s0, by_s1, by_s2] = by_shape(reflected.by_parabola, jacobian);
         let [seen_a, seen_b] = reflected.seen_by;
         let color = reflected.color + c * emitted;
         let by_c = emitted - (1.0 - w) * seen_a - w * seen_b;
@@ -192,57 +191,45 @@ impl Residuals<3, 5> for DyeProblem<'_> {
 }
 
 /// Reflectance under a film of two dyes; the unknowns are the shape's coordinates and the optical
-/// density of each dye.
+/// density of each dye. Sums are in single precision, which errs by 1e-4 ΔE00 at most.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FilmProblem<'a> {
-    pub(crate) sums: &'a Sums,
+    pub(crate) sums: &'a SingleSums,
     pub(crate) goal: Goal,
     pub(crate) shape: Shape,
     pub(crate) model: &'a ModelOnGrid,
     pub(crate) dyes: [usize; 2],
-    /// Absorption of the two dyes.
-    pub(crate) absorption: [&'a Lanes; 2],
 }
 
 /// The color under a film, its derivatives by the unknowns, and the light that passes the film.
 struct FilmColor {
     color: Xyz,
     derivatives: [Xyz; 5],
-    passed: Lanes,
+    passed: SingleLanes,
 }
 
 impl FilmProblem<'_> {
     fn color(&self, &[s0, s1, s2, a0, a1]: &[f64; 5]) -> FilmColor {
         let (parabola, jacobian) = self.shape.chart([s0, s1, s2]);
-        let mut passed = [0.0; MOST_SAMPLES];
-        let passed = &mut passed[..self.model.wavelengths_nm().len()];
-        let emitted = self.model.emitted_by_film(self.dyes, [a0, a1], passed);
-        let passed = self.sums.lanes(passed);
-        let blocked = lanes_from(|i| 1.0 - passed[i]);
-        let [a, b] = self.absorption.map(|a| lanes_from(|i| a[i] * passed[i]));
-        let reflected = self.sums.reflect(parabola, &blocked, [&a, &b]);
-        let [by_s0, by_s1, by_s2] = by_shape(&reflected, jacobian);
-        let [by_a0, by_a1] =
-            [0, 1].map(|dye| Xyz::from(emitted.derivatives[dye]) - LN_10 * reflected.seen_by[dye]);
-        let color = reflected.color + Xyz::from(emitted.color);
+        let (emitted, passed) = self.sums.film(self.model, self.dyes, [a0, a1]);
+        let Shown { color, by, seen } =
+            self.sums.reflect_under_film(0.0, &parabola, self.dyes, &passed);
+        let [by_s0, by_s1, by_s2] = by_shape(by.map(|by| Xyz(in_double(by))), jacobian);
+        let [by_a0, by_a1] = [0, 1]
+            .map(|dye| Xyz::from(emitted.derivatives[dye]) - LN_10 * Xyz(in_double(seen[dye])));
+        let color = Xyz(in_double(color)) + Xyz::from(emitted.color);
         FilmColor { color, derivatives: [by_s0, by_s1, by_s2, by_a0, by_a1], passed }
     }
 
-    /// How the residuals change with each unknown, and with the optical density of each dye of the set,
-    /// whose absorptions are `lanes`.
-    pub(crate) fn by_every_dye(
-        &self,
-        x: &[f64; 5],
-        lanes: &[Lanes],
-    ) -> ([[f64; 3]; 5], Vec<[f64; 3]>) {
+    /// How the residuals change with each unknown, and with the optical density of each dye of the set.
+    pub(crate) fn by_every_dye(&self, x: &[f64; 5]) -> ([[f64; 3]; 5], Vec<[f64; 3]>) {
         let FilmColor { color, derivatives, passed } = self.color(x);
         let &[s0, s1, s2, a0, a1] = x;
-        let reflectance = self.sums.reflectance(self.shape.chart([s0, s1, s2]).0);
+        let lost = self.sums.seen_by_dyes(&self.shape.chart([s0, s1, s2]).0, &passed);
         let emitted = self.model.emitted_by_dyes_of_set(self.dyes, [a0, a1]);
         let (_, by_color) = self.goal.residuals(color);
-        let by_dye = emitted.into_iter().zip(lanes).map(|(emitted, a)| {
-            let lost = self.sums.integrate(|i| reflectance[i] * passed[i] * a[i]);
-            by_color * (Xyz::from(emitted) - LN_10 * lost).0
+        let by_dye = emitted.into_iter().zip(lost).map(|(emitted, lost)| {
+            by_color * (Xyz::from(emitted) - LN_10 * Xyz(in_double(lost))).0
         });
         (derivatives.map(|by| by_color * by.0), by_dye.collect())
     }
@@ -283,7 +270,7 @@ impl Residuals<3, 6> for BellProblem<'_> {
             self.model.emitted_by_bells(self.bells, peak_nm, shift_nm);
         let (emitted, by_peak_nm, by_shift_nm) =
             (Xyz::from(emitted), Xyz::from(by_peak_nm), Xyz::from(by_shift_nm));
-        let [by_s0, by_s1, by_s2] = by_shape(&reflected, jacobian);
+        let [by_s0, by_s1, by_s2] = by_shape(reflected.by_parabola, jacobian);
         let [seen, seen_by_center] = reflected.seen_by;
         let color = reflected.color + c * emitted;
         let by_c = emitted - seen;

@@ -174,16 +174,20 @@ impl Job<'_> {
             .then(|| self.follow(start, self.edge_shape(), &SolverOptions::default()))
     }
 
-    /// The nearest reflectance that is found within the slope limit.
-    pub(crate) fn reflectance(&self) -> Fit {
-        let free = self.free_reflectance(PATIENT_STEPS);
-        let start = Start { reflectance: free.0, fluorescence: Fluorescence::None };
-        if self.steepness(free.0) <= 1.0 {
-            let fit = self.measured(free.0, Fluorescence::None);
+    /// The nearest reflectance without a slope limit.
+    pub(crate) fn reflectance_without_limit(&self) -> Edge {
+        self.free_reflectance(PATIENT_STEPS).0
+    }
+
+    /// The nearest reflectance within the slope limit that is found from the one without a limit.
+    pub(crate) fn reflectance_near(&self, free: Edge) -> Fit {
+        if self.steepness(free) <= 1.0 {
+            let fit = self.measured(free, Fluorescence::None);
             if fit.is_matched() {
                 return fit;
             }
         }
+        let start = Start { reflectance: free, fluorescence: Fluorescence::None };
         self.follow(start, self.edge_shape(), &SolverOptions::default())
     }
 

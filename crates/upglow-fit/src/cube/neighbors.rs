@@ -21,6 +21,8 @@ const ROUNDS: usize = 3;
 /// How the colors of a material shift from the contract's light to others, in Lab.
 type Shifts = [[f64; 3]; 3];
 
+const NONE: Shifts = [[0.0; 3]; 3];
+
 /// Replaces the material of each node that fluoresces by the match nearest to the materials of its
 /// neighbors, of those with at most twice the least dose.
 ///
@@ -59,13 +61,30 @@ impl<'f> Choice<'f> {
             .into();
         let stage = Stage::new("choosing", ROUNDS * (fields[0].len() + fields[1].len()), watch);
         let least: Vec<f64> = fits.iter().map(|fit| fit.fluorescence.dose()).collect();
-        let mut shifts: Vec<Shifts> = fits.par_iter().map(|fit| self.shifts(fit)).collect();
-        for nodes in std::iter::repeat_n(&fields, ROUNDS).flatten() {
+        let mut is_asked = vec![false; fits.len()];
+        for &node in fields.iter().flatten() {
+            is_asked[node] = true;
+            self.lattice.neighbors(node).for_each(|neighbor| is_asked[neighbor] = true);
+        }
+        let shifts = |(fit, asked): (&Fit, &bool)| if *asked { self.shifts(fit) } else { NONE };
+        let mut shifts: Vec<Shifts> = fits.par_iter().zip(&is_asked).map(shifts).collect();
+        // When each node changed last. Updates are counted; those before the first one changed all.
+        let mut changed_at = vec![1; fits.len()];
+        for (update, nodes) in (2..).zip(std::iter::repeat_n(&fields, ROUNDS).flatten()) {
+            let last = update - fields.len();
             let chosen = stage.each(nodes.len(), |k| {
-                self.chosen(&fits, &shifts, nodes[k], MOST_DOSE * least[nodes[k]])
+                let node = nodes[k];
+                let mut around = self.lattice.neighbors(node).chain([node]);
+                // If nothing changed since the node was asked last, it would answer the same.
+                around
+                    .any(|i| changed_at[i] >= last)
+                    .then(|| self.chosen(&fits, &shifts, node, MOST_DOSE * least[node]))
             })?;
             for (&node, chosen) in nodes.iter().zip(chosen) {
-                (fits[node], shifts[node]) = chosen;
+                let Some((fit, shift)) = chosen.filter(|(fit, _)| *fit != fits[node]) else {
+                    continue;
+                };
+                (fits[node], shifts[node], changed_at[node]) = (fit, shift, update);
             }
         }
         Ok(fits)
@@ -100,7 +119,7 @@ impl<'f> Choice<'f> {
 
     fn shifts(&self, fit: &Fit) -> Shifts {
         let home = fit.lab;
-        let mut shifts = [[0.0; 3]; 3];
+        let mut shifts = NONE;
         for (shift, light) in shifts.iter_mut().zip(&self.lights) {
             let lab = light.colorimetry().lab_from_xyz(light.color(fit.material()));
             *shift = [lab.l - home.l, lab.a - home.a, lab.b - home.b];

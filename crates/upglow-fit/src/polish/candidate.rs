@@ -7,9 +7,9 @@ use upglow::{AnalyticModel, Edge, FilmModel, Model};
 use crate::polish::Polisher;
 use crate::polish::descent::{Bounds, Measure, Point, UNKNOWNS, Unknowns, Vector};
 use crate::polish::start::{Family, Glow};
-use crate::polish::sums::Shown;
 use crate::problem::parabola::{MIDDLE_NM, Parabola, UNIT_NM, edge_of, scaled, sigmoid_of};
 use crate::problem::shortest_step::{LEAST_DAMPING, dot, shortest_step, within};
+use crate::problem::single_sums::{Shown, in_double};
 use crate::problem::{EDGE_BOUND, LEVEL_BOUND};
 
 /// The color of a material, and its derivatives.
@@ -127,7 +127,7 @@ impl Polisher<'_> {
             at[i] = (r - 0.5) * inverse;
             scale[i] = 0.25 * inverse * inverse * inverse;
         }
-        ValueShape { parabola: self.sums.parabola(at), scale }
+        ValueShape { parabola: self.sums().parabola(at), scale }
     }
 
     /// The material with these unknowns.
@@ -145,7 +145,7 @@ impl Polisher<'_> {
         let shaded = self.shade(family, 0.0, parabola, &[x[3], x[4], x[5]]);
         let mut by = [[0.0; 3]; UNKNOWNS];
         for i in 0..3 {
-            let chart = &self.sums.chart[i];
+            let chart = &self.sums().chart[i];
             for k in 0..3 {
                 let mut sum = 0.0;
                 for m in 0..3 {
@@ -164,29 +164,29 @@ impl Polisher<'_> {
         let parabola = &candidate.shape.parabola;
         let (mut color, emitted) = match (family, self.cube.model()) {
             (Family::Film(dyes), _) => {
-                let (emitted, passed) = self.sums.film(self.fitter.model(), dyes, [c, u]);
-                let mut color = in_double(self.sums.color_under_film(parabola, &passed));
+                let (emitted, passed) = self.sums().film(self.fitter.model(), dyes, [c, u]);
+                let mut color = in_double(self.sums().color_under_film(parabola, &passed));
                 for k in 0..3 {
                     color[k] += emitted.color[k];
                 }
                 return color;
             }
             (Family::Pair(first), Model::Dyes(dyes)) => {
-                let absorbers = [&self.sums.dyes[first], &self.sums.dyes[dyes.partner(first)]];
+                let absorbers = [&self.sums().dyes[first], &self.sums().dyes[dyes.partner(first)]];
                 let shares = [c * (1.0 - u), c * u];
-                let color = self.sums.color(parabola, absorbers, shares);
+                let color = self.sums().color(parabola, absorbers, shares);
                 (in_double(color), self.emissions[first].at(u).0)
             }
             (Family::Bells, Model::Analytic(bells)) => {
                 let (peak_nm, shift_nm) = (u * UNIT_NM, v * UNIT_NM);
-                let [absorption, _] = &self.sums.bell_absorbers(peak_nm - shift_nm);
-                let color = self.sums.color(parabola, [absorption, absorption], [c, 0.0]);
+                let [absorption, _] = &self.sums().bell_absorbers(peak_nm - shift_nm);
+                let color = self.sums().color(parabola, [absorption, absorption], [c, 0.0]);
                 let emitted = self.fitter.model().emitted_by_bells(bells, peak_nm, shift_nm);
                 (in_double(color), emitted.color)
             }
             _ => {
-                let clear = &self.sums.clear;
-                (in_double(self.sums.color(parabola, [clear, clear], [0.0; 2])), [0.0; 3])
+                let clear = &self.sums().clear;
+                (in_double(self.sums().color(parabola, [clear, clear], [0.0; 2])), [0.0; 3])
             }
         };
         for k in 0..3 {
@@ -244,7 +244,7 @@ impl Polisher<'_> {
             by[v] = [l, a, b, 0.0];
         }
         for i in 0..3 {
-            by[i][3] = STEEPNESS_WEIGHT * scale[i] * dot(&self.sums.chart[i], &by_parabola);
+            by[i][3] = STEEPNESS_WEIGHT * scale[i] * dot(&self.sums().chart[i], &by_parabola);
         }
         shortest_step(&here.x, &residual, &by, bounds, LEAST_DAMPING)
     }
@@ -254,9 +254,9 @@ impl Polisher<'_> {
         let &[c, u, v] = glow;
         match (family, self.cube.model()) {
             (Family::Pair(first), Model::Dyes(dyes)) => {
-                let absorbers = [&self.sums.dyes[first], &self.sums.dyes[dyes.partner(first)]];
+                let absorbers = [&self.sums().dyes[first], &self.sums().dyes[dyes.partner(first)]];
                 let shares = [c * (1.0 - u), c * u];
-                let shown = self.sums.reflect(center, parabola, absorbers, shares);
+                let shown = self.sums().reflect(center, parabola, absorbers, shares);
                 let (emitted, by_weight) = self.emissions[first].at(u);
                 let mut shaded = Shaded::of(&shown);
                 for k in 0..3 {
@@ -268,8 +268,8 @@ impl Polisher<'_> {
                 shaded
             }
             (Family::Film(dyes), _) => {
-                let (emitted, passed) = self.sums.film(self.fitter.model(), dyes, [c, u]);
-                let shown = self.sums.reflect_under_film(center, parabola, dyes, &passed);
+                let (emitted, passed) = self.sums().film(self.fitter.model(), dyes, [c, u]);
+                let shown = self.sums().reflect_under_film(center, parabola, dyes, &passed);
                 let mut shaded = Shaded::of(&shown);
                 for k in 0..3 {
                     shaded.color[k] += emitted.color[k];
@@ -282,9 +282,9 @@ impl Polisher<'_> {
             }
             (Family::Bells, Model::Analytic(bells)) => {
                 let (peak_nm, shift_nm) = (u * UNIT_NM, v * UNIT_NM);
-                let [absorption, by_center] = self.sums.bell_absorbers(peak_nm - shift_nm);
+                let [absorption, by_center] = self.sums().bell_absorbers(peak_nm - shift_nm);
                 let absorbers = [&absorption, &by_center];
-                let shown = self.sums.reflect(center, parabola, absorbers, [c, 0.0]);
+                let shown = self.sums().reflect(center, parabola, absorbers, [c, 0.0]);
                 let emitted = self.fitter.model().emitted_by_bells(bells, peak_nm, shift_nm);
                 let [by_peak, by_shift] = emitted.derivatives;
                 let mut shaded = Shaded::of(&shown);
@@ -298,16 +298,11 @@ impl Polisher<'_> {
                 shaded
             }
             _ => {
-                let clear = &self.sums.clear;
-                Shaded::of(&self.sums.reflect(center, parabola, [clear, clear], [0.0; 2]))
+                let clear = &self.sums().clear;
+                Shaded::of(&self.sums().reflect(center, parabola, [clear, clear], [0.0; 2]))
             }
         }
     }
-}
-
-#[inline(always)]
-fn in_double([x, y, z]: [f32; 3]) -> Vector {
-    [f64::from(x), f64::from(y), f64::from(z)]
 }
 
 impl ValueShape {
@@ -419,7 +414,7 @@ mod tests {
                 let (low, high) = (moved(-STEP), moved(STEP));
                 for m in 0..3 {
                     let quotient = (high[m] - low[m]) / (2.0 * STEP);
-                    let told = shape.scale[i] * polisher.sums.chart[i][m];
+                    let told = shape.scale[i] * polisher.sums().chart[i][m];
                     assert!((told - quotient).abs() < 1e-4 * (1.0 + quotient.abs()), "{values:?}");
                 }
             }

@@ -3,8 +3,8 @@
 use upglow::{Cube, Edge, Fluorescence, ModelOnGrid};
 use upglow_color::rounding::to_single;
 
-use crate::polish::sums::CHART_NM;
 use crate::problem::parabola::{UNIT_NM, edge_of, scaled};
+use crate::problem::single_sums::CHART_NM;
 
 /// A node, prepared for polishing; one cache line.
 #[derive(Clone, Copy, Debug)]

@@ -12,9 +12,9 @@ use crate::polish::candidate::{
 use crate::polish::corner::{Corners, all, mean};
 use crate::polish::descent::{Bounds, LEAST_GAIN, Measure, Point, Unknowns, Vector, solve};
 use crate::polish::start::{self, Family, Glow};
-use crate::polish::sums::Shown;
 use crate::problem::parabola::MIDDLE_NM;
 use crate::problem::shortest_step::{LEAST_DAMPING, dot, shortest_step, within};
+use crate::problem::single_sums::Shown;
 
 /// CIEDE2000 is at most this many times a small distance in Lab: 1.5 near gray, where it stretches a*,
 /// and slightly more in the blue, where it rotates. A test looks for more.
@@ -204,7 +204,7 @@ impl<'p, 'c, 'n> Texel<'p, 'c, 'n> {
         let [a, b, d] = inside(self.mean_values());
         if glow.family == Family::Passive {
             let shape = polisher.shape(&[a, b, d]);
-            let shown = polisher.sums.reflect_chart(&shape.parabola);
+            let shown = polisher.sums().reflect_chart(&shape.parabola);
             let next = self.passive_step(&[a, b, d], &shape, &shown);
             let shape = next.map_or(shape, |values| polisher.shape(&values));
             return self.within_limit(shape.edge(), &glow);
@@ -241,7 +241,7 @@ impl<'p, 'c, 'n> Texel<'p, 'c, 'n> {
 
     /// A reflectance that matches, found from the mean of the corners without bounds.
     fn passive(&self) -> Option<Node> {
-        let sums = &self.polisher.sums;
+        let sums = self.polisher.sums();
         let mut values = inside(self.mean_values());
         for _ in 0..PASSIVE_STEPS {
             let shape = self.polisher.shape(&values);

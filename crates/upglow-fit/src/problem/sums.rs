@@ -89,7 +89,16 @@ impl Sums {
 
     /// ∫ w·curve.
     pub(crate) fn integrate(&self, curve: impl Fn(usize) -> f64) -> Xyz {
-        Xyz(self.weights.each_ref().map(|w| (0..LANES).map(|i| w[i] * curve(i)).sum()))
+        let mut sums = [[0.0; WIDTH]; 3];
+        for at in (0..LANES).step_by(WIDTH) {
+            for lane in 0..WIDTH {
+                let value = curve(at + lane);
+                for (sum, w) in sums.iter_mut().zip(&self.weights) {
+                    sum[lane] += w[at + lane] * value;
+                }
+            }
+        }
+        Xyz(sums.map(|[a, b, c, d]| (a + b) + (c + d)))
     }
 
     /// The color of a reflectance behind an absorber that takes the share `absorbed`, and the color

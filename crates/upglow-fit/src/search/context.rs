@@ -8,6 +8,7 @@ use upglow_color::{Contract, Grid, Xyz};
 
 use super::starts::StartTable;
 use crate::problem::Shape;
+use crate::problem::single_sums::SingleSums;
 use crate::problem::sums::{CLEAR, Lanes, Sums, lanes_from};
 
 /// The sums, starts and limits of fits, and the count of their evaluations.
@@ -15,6 +16,7 @@ use crate::problem::sums::{CLEAR, Lanes, Sums, lanes_from};
 pub(crate) struct Context {
     pub(crate) model: ModelOnGrid,
     pub(crate) sums: Sums,
+    pub(crate) single_sums: SingleSums,
     pub(crate) dye_lanes: Vec<Lanes>,
     /// How often residuals and derivatives were evaluated so far, in all fits.
     pub(crate) evaluations: AtomicU64,
@@ -38,10 +40,11 @@ impl Context {
     pub(crate) fn new(contract: &Contract, model: &Model) -> Self {
         let model = ModelOnGrid::new(model, &contract.on(Grid::FIT));
         let sums = Sums::new(&model);
+        let single_sums = SingleSums::new(&model);
         let dyes = model.model().dyes().map_or(0, |dyes| dyes.curves().len());
         let dye_lanes: Vec<Lanes> =
             (0..dyes).map(|dye| sums.lanes(model.dye_absorption(dye))).collect();
-        Self { model, sums, dye_lanes, evaluations: AtomicU64::new(0) }
+        Self { model, sums, single_sums, dye_lanes, evaluations: AtomicU64::new(0) }
     }
 
     /// The starts of a stage, which fluoresce if the model does.

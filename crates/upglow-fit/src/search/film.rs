@@ -160,7 +160,7 @@ impl Job<'_> {
     fn with_another_dye(&self, fit: &Fit) -> Option<Fit> {
         let (problem, x) = self.film_of(fit).filter(|_| fit.is_matched())?;
         let (dyes, [.., a0, a1]) = (problem.dyes, x);
-        let (by, by_dye) = problem.by_every_dye(&x, &self.context.dye_lanes);
+        let (by, by_dye) = problem.by_every_dye(&x);
         self.context.count(1);
         let multipliers = multipliers(&x, &by, &problem.bounds())?;
         let cost = |by: &[f64; 3]| 1.0 - (0..3).map(|i| multipliers[i] * by[i]).sum::<f64>();
@@ -247,12 +247,11 @@ impl Job<'_> {
     pub(super) fn film_problem(&self, shape: Shape, dyes: [usize; 2]) -> FilmProblem<'_> {
         let context = self.context;
         FilmProblem {
-            sums: &context.sums,
+            sums: &context.single_sums,
             goal: self.goal,
             shape,
             model: &context.model,
             dyes,
-            absorption: dyes.map(|dye| &context.dye_lanes[dye]),
         }
     }
 }

@@ -1,8 +1,9 @@
 //! Where fits start: a table of materials, most at the slope limit, and those nearest to a color.
 
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 
-use fearless_simd::{Level, Simd, dispatch};
+use fearless_simd::prelude::*;
+use fearless_simd::{Level, dispatch, f32x16, u32x16};
 use upglow::{AnalyticModel, DyeModel, Edge, FilmModel, Fluorescence, Model, ModelOnGrid};
 use upglow_color::rounding::to_single;
 use upglow_color::{Goal, Lab, Xyz, ciede2000, ciede2000_residuals, lab_from_xyz};
@@ -31,9 +32,12 @@ struct Entry {
     fluorescence: Fluorescence,
 }
 
-/// Steepest points of the start shapes, nm: first, last, step. A finer step finds no better materials;
-/// one of 40 nm misses some.
-const EDGES_NM: [u32; 3] = [390, 710, 20];
+/// Steepest points of the start shapes, nm.
+const EDGES_NM: RangeInclusive<u32> = 390..=710;
+/// Their distance, nm. A finer one finds no better materials; one of 40 nm misses some, but not of films,
+/// where any two dyes at several densities make up for it.
+const STEP_NM: usize = 20;
+const STEP_UNDER_FILMS_NM: usize = 40;
 /// Their widths, nm, from a spike to a straight edge.
 const WIDTHS_NM: [f64; 6] = [4.0, 10.0, 25.0, 60.0, 150.0, 1000.0];
 /// Start slopes are the limit, a third of it, and so on down to this, 1/nm: fits of softer ones succeed
@@ -75,7 +79,11 @@ impl StartTable {
         dye_lanes: &[Lanes],
         slope_limit_per_nm: f64,
     ) -> Self {
-        let shapes = shapes(slope_limit_per_nm);
+        let step_nm = match model.model() {
+            Model::Film(_) => STEP_UNDER_FILMS_NM,
+            Model::Reflectance | Model::Dyes(_) | Model::Analytic(_) => STEP_NM,
+        };
+        let shapes = shapes(slope_limit_per_nm, step_nm);
         let (variants, bells) = variants(model, sums);
         let absorbers = match model.model() {
             Model::Dyes(_) => dye_lanes,
@@ -151,7 +159,7 @@ impl StartTable {
             #[inline(always)]
             || {
                 for range in self.buckets.windows(2) {
-                    best.extend(self.nearest_of(range[0]..range[1], &form));
+                    best.extend(self.nearest_of(simd, range[0]..range[1], &form));
                 }
             },
         ));
@@ -183,22 +191,23 @@ impl StartTable {
 
     /// The least value of the form in a bucket, and the first entry that has it.
     #[inline(always)]
-    fn nearest_of(&self, bucket: Range<usize>, form: &Form) -> Option<(f32, usize)> {
-        let [l, a, b] = self.lab.each_ref().map(|v| v[bucket.clone()].as_chunks::<WIDTH>().0);
-        let mut least = [f32::INFINITY; WIDTH];
-        let mut block_of = [0_u32; WIDTH];
-        for (block, ((l, a), b)) in (0_u32..).zip(l.iter().zip(a).zip(b)) {
-            for k in 0..WIDTH {
-                let at = form.at(l[k], a[k], b[k]);
-                let is_less = at < least[k];
-                least[k] = if is_less { at } else { least[k] };
-                block_of[k] = if is_less { block } else { block_of[k] };
-            }
+    fn nearest_of<S: Simd>(
+        &self,
+        simd: S,
+        bucket: Range<usize>,
+        form: &Form,
+    ) -> Option<(f32, usize)> {
+        let mut least = f32x16::splat(simd, f32::INFINITY);
+        let mut block_of = u32x16::splat(simd, 0);
+        for (block, at) in (0_u32..).zip(bucket.clone().step_by(WIDTH)) {
+            let lab = self.lab.each_ref().map(|v| f32x16::from_slice(simd, &v[at..at + WIDTH]));
+            let value = form.at(lab);
+            let is_less = value.simd_lt(least);
+            least = is_less.select(value, least);
+            block_of = is_less.select(u32x16::splat(simd, block), block_of);
         }
-        let places = least.into_iter().zip(block_of).enumerate();
-        let (at, index) = places
-            .map(|(k, (at, block))| (at, block as usize * WIDTH + k))
-            .min_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)))?;
+        let places = (0..WIDTH).map(|k| (least[k], block_of[k] as usize * WIDTH + k));
+        let (at, index) = places.min_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)))?;
         at.is_finite().then_some((at, bucket.start + index))
     }
 }
@@ -228,10 +237,10 @@ impl Form {
     }
 
     #[inline(always)]
-    fn at(&self, l: f32, a: f32, b: f32) -> f32 {
+    fn at<S: Simd>(&self, [l, a, b]: [f32x16<S>; 3]) -> f32x16<S> {
         let [l0, a0, b0] = self.center;
-        let (dl, da, db) = (self.by_l * (l - l0), a - a0, b - b0);
-        let [second, third] = self.by_ab.map(|row| row[0] * da + row[1] * db);
+        let (dl, da, db) = ((l - l0) * self.by_l, a - a0, b - b0);
+        let [second, third] = self.by_ab.map(|row| da * row[0] + db * row[1]);
         dl * dl + second * second + third * third
     }
 }
@@ -243,14 +252,14 @@ fn absorbed(absorbers: &[(usize, f64); 2], taken: &[Xyz]) -> Xyz {
 }
 
 /// Rising and falling edges over the visible range, of peaks and valleys of each width.
-fn shapes(slope_limit_per_nm: f64) -> Vec<Edge> {
+fn shapes(slope_limit_per_nm: f64, step_nm: usize) -> Vec<Edge> {
     let mut shapes = Vec::new();
     let mut slope = slope_limit_per_nm;
     loop {
         for width_nm in WIDTHS_NM {
             for sign in [1.0, -1.0] {
                 for falling in [false, true] {
-                    add_shapes(&mut shapes, slope, width_nm * sign, falling);
+                    shapes.extend(edges(slope, width_nm * sign, falling, step_nm));
                 }
             }
         }
@@ -261,21 +270,24 @@ fn shapes(slope_limit_per_nm: f64) -> Vec<Edge> {
     }
 }
 
-/// Adds a shape for each edge; `signed_width_nm` is positive for valleys.
-fn add_shapes(shapes: &mut Vec<Edge>, slope_per_nm: f64, signed_width_nm: f64, falling: bool) {
+/// A shape for each edge; `signed_width_nm` is positive for valleys.
+fn edges(
+    slope_per_nm: f64,
+    signed_width_nm: f64,
+    falling: bool,
+    step_nm: usize,
+) -> impl Iterator<Item = Edge> {
     let level = level_at(slope_per_nm, signed_width_nm);
     let direction = if falling { -1.0 } else { 1.0 };
-    let [first, last, step] = EDGES_NM;
-    for edge_nm in (first..=last).step_by(step as usize).map(f64::from) {
-        // The other edge of a valley is at shorter wavelengths for a rising edge.
+    let visible = f64::from(*EDGES_NM.start())..=f64::from(*EDGES_NM.end());
+    EDGES_NM.step_by(step_nm).map(f64::from).filter_map(move |edge_nm| {
+        // The other edge of a valley is at shorter wavelengths for a rising edge. If it is visible too,
+        // the other direction adds the same shape.
         let other_nm = edge_nm - 2.0 * signed_width_nm * direction;
-        // If that is in range too, the other direction adds the same shape.
-        if falling && (f64::from(first)..=f64::from(last)).contains(&other_nm) {
-            continue;
-        }
         let edge = Edge { edge_nm, level, slope_per_nm: slope_per_nm * direction };
-        shapes.push(edge.to_sigmoid().to_edge(MIDDLE_NM));
-    }
+        let is_repeated = falling && visible.contains(&other_nm);
+        (!is_repeated).then(|| edge.to_sigmoid().to_edge(MIDDLE_NM))
+    })
 }
 
 /// The level P of a steepest point at this distance from the extremum: P√(1 + P²) = 1 / (6·s·w).

@@ -6,12 +6,12 @@ use upglow::{AnalyticModel, Emitted, Model, ModelOnGrid};
 use upglow_color::Grid;
 use upglow_color::rounding::to_single;
 
-use crate::problem::parabola::{Parabola, scaled};
+use super::parabola::{Parabola, scaled};
 
 /// Samples of a curve at the visible wavelengths, padded to whole vectors.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
-pub(super) struct SingleLanes([f32; LANES]);
+pub(crate) struct SingleLanes([f32; LANES]);
 
 /// 360, 365 … 830 nm are 95 samples of the 5 nm grid.
 const LANES: usize = 96;
@@ -21,11 +21,11 @@ const WIDTH: usize = 8;
 
 /// The three wavelengths, nm, of the chart of values: where the observer is most sensitive to blue, green
 /// and red, so that colors are nearly linear in the values and nearly separate.
-pub(super) const CHART_NM: [f64; 3] = [455.0, 545.0, 610.0];
+pub(crate) const CHART_NM: [f64; 3] = [455.0, 545.0, 610.0];
 
 /// An absorption, and its product with the weights.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Absorber {
+pub(crate) struct Absorber {
     curve: SingleLanes,
     weighted: [SingleLanes; 3],
 }
@@ -76,7 +76,7 @@ impl Veil for SingleLanes {
 
 /// Curves and weights of the sums.
 #[derive(Clone, Debug)]
-pub(super) struct SingleSums {
+pub(crate) struct SingleSums {
     simd_level: Level,
     /// The first visible wavelength's place in the grid.
     first: usize,
@@ -86,22 +86,22 @@ pub(super) struct SingleSums {
     /// `[chart wavelength][X Y Z]`.
     chart_weights: [[SingleLanes; 3]; 3],
     /// Those parabolas, `[chart wavelength][coefficient]`.
-    pub(super) chart: [Parabola; 3],
+    pub(crate) chart: [Parabola; 3],
     /// Dyes in the order of their set.
-    pub(super) dyes: Vec<Absorber>,
-    pub(super) clear: Absorber,
+    pub(crate) dyes: Vec<Absorber>,
+    pub(crate) clear: Absorber,
     bells: Option<Bells>,
 }
 
 /// The color of a reflectance, and derivatives.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Shown {
-    pub(super) color: [f32; 3],
+pub(crate) struct Shown {
+    pub(crate) color: [f32; 3],
     /// Derivatives of the color with respect to the parabola's coefficients of 1, d, d², or to its values
     /// at the chart wavelengths.
-    pub(super) by: [[f32; 3]; 3],
+    pub(crate) by: [[f32; 3]; 3],
     /// ∫ w·absorption·r for two absorbers; in a film r is what passes.
-    pub(super) seen: [[f32; 3]; 2],
+    pub(crate) seen: [[f32; 3]; 2],
 }
 
 impl SingleLanes {
@@ -111,6 +111,16 @@ impl SingleLanes {
         Self(std::array::from_fn(f))
     }
 
+    /// The sum of products, in [`WIDTH`] partial sums.
+    fn dot(&self, other: &Self) -> f32 {
+        let mut parts = [0.0; WIDTH];
+        let pairs = self.0.as_chunks::<WIDTH>().0.iter().zip(other.0.as_chunks::<WIDTH>().0);
+        for (a, b) in pairs {
+            (0..WIDTH).for_each(|i| parts[i] += a[i] * b[i]);
+        }
+        parts.iter().sum()
+    }
+
     #[inline(always)]
     fn at<S: Simd>(&self, simd: S, at: usize) -> f32x8<S> {
         f32x8::from_slice(simd, &self.0[at..at + WIDTH])
@@ -118,7 +128,7 @@ impl SingleLanes {
 }
 
 impl SingleSums {
-    pub(super) fn new(model: &ModelOnGrid) -> Self {
+    pub(crate) fn new(model: &ModelOnGrid) -> Self {
         let all = model.colorimetry().weights();
         let first = all.iter().position(|w| w.iter().any(|v| *v != 0.0)).unwrap_or(0);
         assert!(all.len() - first <= LANES, "fits run on the 5 nm grid");
@@ -155,7 +165,7 @@ impl SingleSums {
 
     /// The parabola that has these values at the chart wavelengths.
     #[inline(always)]
-    pub(super) fn parabola(&self, [a, b, c]: [f64; 3]) -> Parabola {
+    pub(crate) fn parabola(&self, [a, b, c]: [f64; 3]) -> Parabola {
         let [to_a, to_b, to_c] = &self.chart;
         let mut parabola = [0.0; 3];
         for m in 0..3 {
@@ -166,7 +176,7 @@ impl SingleSums {
 
     /// The color of a reflectance, and its derivatives with respect to the parabola's values at the chart
     /// wavelengths.
-    pub(super) fn reflect_chart(&self, parabola: &Parabola) -> Shown {
+    pub(crate) fn reflect_chart(&self, parabola: &Parabola) -> Shown {
         let parabola = single_parabola(parabola);
         dispatch!(self.simd_level, simd => simd.vectorize(
             #[inline(always)]
@@ -200,7 +210,7 @@ impl SingleSums {
     }
 
     /// What a film of two dyes emits at these optical densities, and the share of light that it lets pass.
-    pub(super) fn film(
+    pub(crate) fn film(
         &self,
         model: &ModelOnGrid,
         dyes: [usize; 2],
@@ -216,7 +226,7 @@ impl SingleSums {
 
     /// The color of a reflectance behind two absorbers with these concentrations, in half the time that
     /// derivatives take.
-    pub(super) fn color(
+    pub(crate) fn color(
         &self,
         parabola: &Parabola,
         absorbers: [&Absorber; 2],
@@ -227,7 +237,7 @@ impl SingleSums {
     }
 
     /// The color of a reflectance behind a film that lets this share of light pass.
-    pub(super) fn color_under_film(&self, parabola: &Parabola, passed: &SingleLanes) -> [f32; 3] {
+    pub(crate) fn color_under_film(&self, parabola: &Parabola, passed: &SingleLanes) -> [f32; 3] {
         self.color_behind(parabola, passed)
     }
 
@@ -265,7 +275,7 @@ impl SingleSums {
 
     /// The color of the reflectance with the parabola `p + d·(b + d·k)`, d = t − `center`, behind
     /// two absorbers with these concentrations, and its derivatives with respect to p, b and k.
-    pub(super) fn reflect(
+    pub(crate) fn reflect(
         &self,
         center: f64,
         parabola: &Parabola,
@@ -283,7 +293,7 @@ impl SingleSums {
     }
 
     /// The same behind a film of two dyes that lets this share of light pass.
-    pub(super) fn reflect_under_film(
+    pub(crate) fn reflect_under_film(
         &self,
         center: f64,
         parabola: &Parabola,
@@ -355,8 +365,19 @@ impl SingleSums {
         Shown { color: totals(color), by: by_totals(by), seen: [totals(seen[0]), totals(seen[1])] }
     }
 
+    /// ∫ w·absorption·passed·r of each dye of the set, `[dye][X Y Z]`.
+    pub(crate) fn seen_by_dyes(&self, parabola: &Parabola, passed: &SingleLanes) -> Vec<[f32; 3]> {
+        let [q0, q1, q2] = single_parabola(parabola);
+        let seen = SingleLanes::from_fn(|i| {
+            let t = self.t.0[i];
+            let x = q0 + t * (q1 + t * q2);
+            passed.0[i] * (0.5 + x * (0.5 * (1.0 / (1.0 + x * x).sqrt())))
+        });
+        self.dyes.iter().map(|dye| dye.weighted.each_ref().map(|lanes| seen.dot(lanes))).collect()
+    }
+
     /// The absorption of a bell around `center_nm`, and its derivative with respect to the center, 1/nm.
-    pub(super) fn bell_absorbers(&self, center_nm: f64) -> [Absorber; 2] {
+    pub(crate) fn bell_absorbers(&self, center_nm: f64) -> [Absorber; 2] {
         let Some(bells) = &self.bells else { return [self.clear; 2] };
         let (center_nm, step_nm) = (to_single(center_nm), bells.absorption_step_nm);
         dispatch!(self.simd_level, simd => simd.vectorize(
@@ -390,7 +411,7 @@ impl Absorber {
 
 /// The bells of the analytic model.
 #[derive(Clone, Debug)]
-pub(super) struct Bells {
+pub(crate) struct Bells {
     visible_nm: SingleLanes,
     absorption_step_nm: f32,
 }
@@ -444,6 +465,11 @@ fn totals<S: Simd>(vectors: [f32x8<S>; 3]) -> [f32; 3] {
 #[inline(always)]
 fn by_totals<S: Simd>([a, b, c]: [[f32x8<S>; 3]; 3]) -> [[f32; 3]; 3] {
     [totals(a), totals(b), totals(c)]
+}
+
+#[inline(always)]
+pub(crate) fn in_double([x, y, z]: [f32; 3]) -> [f64; 3] {
+    [f64::from(x), f64::from(y), f64::from(z)]
 }
 
 #[inline(always)]
