@@ -144,9 +144,14 @@ impl From<&DyeRow> for MeasuredDye {
             absorption: curve(&row.absorption),
             emission: curve(&row.emission),
             quantum_yield: row.quantum_yield,
-            provenance: format!("{}; {}; {}", row.measured_by, row.published_at, row.terms),
+            provenance: joined([row.measured_by, row.published_at, row.terms]),
         }
     }
+}
+
+/// The facts that are known, in one line.
+fn joined(facts: [&str; 3]) -> String {
+    facts.into_iter().filter(|fact| !fact.is_empty()).collect::<Vec<_>>().join("; ")
 }
 
 /// Sets that were renamed, with the former names; files keep these.
@@ -155,6 +160,14 @@ const RENAMED: [(&str, &str); 1] = [("konig8", "seed8")];
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_provenance_of_every_built_in_dye_has_only_what_is_known() {
+        for dye in MeasuredDye::all() {
+            assert!(dye.provenance.split("; ").all(|fact| !fact.is_empty()), "{}", dye.provenance);
+        }
+        assert_eq!(joined(["", "paper", "CC0"]), "paper; CC0");
+    }
 
     #[test]
     fn a_dye_from_samples_has_their_curves() {
