@@ -178,12 +178,17 @@ fn rules(args: &ModelArgs, preset: &Model) -> DyeOptions {
     }
 }
 
-/// The dyes that were given, or else those of the preset.
+/// The dyes that were given, or else those of the preset, or else those of the paper.
 fn dye_set(args: &ModelArgs, preset: &Model) -> Result<DyeSet, Failure> {
-    match (&args.dyes, preset.dyes()) {
-        (None, Some(dyes)) if !args.normalize_dyes => Ok(dyes.set().clone()),
-        (dyes, _) => named_or_folder(dyes.as_deref().unwrap_or("konig8"), args.normalize_dyes),
+    if let Some(text) = &args.dyes {
+        return named_or_folder(text, args.normalize_dyes);
     }
+    if args.normalize_dyes {
+        return Err(not_normalized("without --dyes"));
+    }
+    let paper = Preset::Konig2020.model();
+    let dyes = preset.dyes().or(paper.dyes()).expect("the paper's model has dyes");
+    Ok(dyes.set().clone())
 }
 
 fn named_or_folder(text: &str, normalize: bool) -> Result<DyeSet, Failure> {
@@ -197,12 +202,15 @@ fn named_or_folder(text: &str, normalize: bool) -> Result<DyeSet, Failure> {
             };
             set.map_err(|error| folder_failure(path, error))
         }
-        Ok(_) if normalize => {
-            let message = format!("given with --dyes {text}, expected a folder of CSV files");
-            Err(Failure::option("--normalize-dyes", message))
-        }
+        Ok(_) if normalize => Err(not_normalized(&format!("with --dyes {text}"))),
         named => named.map_err(|error| Failure::option("--dyes", error)),
     }
+}
+
+/// Only the curves of files may be in other units than fractions.
+fn not_normalized(found: &str) -> Failure {
+    let message = format!("given {found}, expected --dyes with a folder of CSV files");
+    Failure::option("--normalize-dyes", message)
 }
 
 /// Names the invalid file in the folder.

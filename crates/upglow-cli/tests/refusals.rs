@@ -114,9 +114,11 @@ fn invalid_dyes() {
     let expected =
         "backward: dye a: the emission's mean wavelength is 500.0 nm, expected at least that of";
     assert!(line.starts_with(expected), "{line}");
-    let line = folder.refused(2, "build --normalize-dyes -o cube");
-    let expected = "given with --dyes konig8, expected a folder of CSV files";
-    assert_eq!(line, format!("--normalize-dyes: {expected}"));
+    for (dyes, found) in [("", "without --dyes"), ("--dyes open8", "with --dyes open8")] {
+        let line = folder.refused(2, &format!("build --normalize-dyes {dyes} -o cube"));
+        let expected = "expected --dyes with a folder of CSV files";
+        assert_eq!(line, format!("--normalize-dyes: given {found}, {expected}"));
+    }
     let line = folder.refused(1, "build --dyes no/ring -o cube");
     assert_eq!(line, "no/ring: no such file or folder, expected a folder of CSV files");
 }
