@@ -44,8 +44,8 @@ const BELOW_ONE: f32 = 1.0 - f32::EPSILON;
 /// flush to zero.
 const TINY: f32 = 1e-30;
 /// Below this optical density a film's absorption is a series. With a smaller one, the closed form
-/// cancels more digits than OSL has, whose exponential errs by 3e-6; with a larger one, the series
-/// needs more terms.
+/// cancels more digits than OSL has, whose renderers approximate the exponential; with a larger one,
+/// the series needs more terms.
 const THIN: f32 = 0.5;
 /// Terms of that series: the first that is left out is 1e-8 of the sum at [`THIN`].
 const TERMS: u32 = 11;
