@@ -22,10 +22,12 @@ const PAIR_POINTS: usize = 4;
 pub(super) struct Findings {
     /// One for each of [`LAWS`].
     pub(super) laws: [Outcome; LAWS.len()],
-    /// Sums over 1 nm against 5 nm for nodes, CIEDE2000.
+    /// Sums over 1 nm against 5 nm for nodes that match, CIEDE2000.
     pub(super) grid_nodes: Figure,
-    /// Sums over 1 nm against 5 nm for random colors, CIEDE2000.
+    /// The same for random colors between such nodes.
     pub(super) grid_points: Figure,
+    /// The same for all other nodes and random colors.
+    pub(super) grid_missed: Figure,
     /// Random colors against their targets, CIEDE2000.
     pub(super) points: Figure,
 }
@@ -54,6 +56,7 @@ impl Findings {
         }
         self.grid_nodes.add(later.grid_nodes);
         self.grid_points.add(later.grid_points);
+        self.grid_missed.add(later.grid_missed);
         self.points.add(later.points);
     }
 }
@@ -198,14 +201,19 @@ impl<'c> Inspector<'c> {
             Subject::Node(index) => {
                 let stored = f64::from(self.cube.nodes()[index].de2000);
                 self.see(Law::Stored, subject, (stored - missed).abs(), None, findings);
-                findings.grid_nodes.see(between_grids);
+                let is_exact = stored <= CubeSummary::EXACT_DE2000;
+                let grid =
+                    if is_exact { &mut findings.grid_nodes } else { &mut findings.grid_missed };
+                grid.see(between_grids);
             }
             Subject::Gray(_) => {}
             Subject::Point(_) => {
                 if self.all_corners_are_exact(rgb) {
                     self.see(Law::Exact, subject, missed, None, findings);
+                    findings.grid_points.see(between_grids);
+                } else {
+                    findings.grid_missed.see(between_grids);
                 }
-                findings.grid_points.see(between_grids);
                 findings.points.see(finding(missed));
             }
         }
