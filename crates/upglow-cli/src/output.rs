@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Display};
 
-use upglow_fit::{CubeSummary, MaterialKind};
+use upglow_fit::{CubeSummary, KindCounts, MaterialKind};
 use upglow_terminal::size;
 
 /// Prints a warning on standard error.
@@ -32,25 +32,35 @@ impl Lines {
 
     /// Adds a line per number of a summary.
     pub(crate) fn add_summary(&mut self, summary: &CubeSummary) -> &mut Self {
-        let width = summary.nodes.to_string().len();
-        let share = |count: u64| {
-            let percent = 100.0 * count as f64 / summary.nodes.max(1) as f64;
-            format!("{count:width$}  {percent:6.2} %")
-        };
+        let share = |count| share(count, summary.nodes as u64);
         self.add("nodes", summary.nodes);
-        for (kind, count) in summary.kinds.each() {
-            let remark = match kind {
-                MaterialKind::Missed => format!("  ΔE00 > {}", CubeSummary::EXACT_DE2000),
-                _ => String::new(),
-            };
-            self.add(kind.label(), share(count) + &remark);
-        }
+        self.add_kinds(&summary.kinds);
         self.add("within 1", format_args!("{}  ΔE00 ≤ 1", share(summary.within_1 as u64)))
             .add("within 2", format_args!("{}  ΔE00 ≤ 2", share(summary.within_2 as u64)))
             .add("mean ΔE00", format_args!("{:.3}", summary.mean_de2000))
             .add("p95 ΔE00", format_args!("{:.3}", summary.p95_de2000))
             .add("max ΔE00", format_args!("{:.3}", summary.max_de2000))
     }
+
+    /// Adds a line per kind of material.
+    pub(crate) fn add_kinds(&mut self, kinds: &KindCounts) -> &mut Self {
+        let all = kinds.each().iter().map(|(_, count)| count).sum();
+        for (kind, count) in kinds.each() {
+            let remark = match kind {
+                MaterialKind::Missed => format!("  ΔE00 > {}", CubeSummary::EXACT_DE2000),
+                _ => String::new(),
+            };
+            self.add(kind.label(), share(count, all) + &remark);
+        }
+        self
+    }
+}
+
+/// A count and its share of all, which is at least as great; aligned for the same `all`.
+fn share(count: u64, all: u64) -> String {
+    let width = all.to_string().len();
+    let percent = 100.0 * count as f64 / all.max(1) as f64;
+    format!("{count:width$}  {percent:6.2} %")
 }
 
 impl Display for Lines {

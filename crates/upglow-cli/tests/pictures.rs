@@ -37,6 +37,13 @@ fn desk() -> Folder {
     folder
 }
 
+/// How reports count texels by the kind of their material.
+fn kinds(reflectance: u64, dyed: u64, steep: u64, missed: u64) -> Value {
+    serde_json::json!({
+        "reflectance": reflectance, "dyed": dyed, "steep": steep, "missed": missed,
+    })
+}
+
 #[test]
 fn the_examples_are_those_of_the_repository() {
     let folder = Folder::new();
@@ -66,11 +73,14 @@ fn check_says_what_each_texel_needs() {
     assert_eq!((&found["worst"][0]["x"], &found["worst"][0]["y"]), (&1.into(), &1.into()));
     assert_eq!((&found["page"], &found["heat_map"]), (&"page.html".into(), &"heat.png".into()));
     assert!(found["cube"]["greatest_de2000"].as_f64().unwrap() > 1.0);
+    assert_eq!(found["cube"]["kinds"], kinds(1, 0, 0, 3));
     let page = String::from_utf8(folder.read("page.html")).unwrap();
     assert!(page.starts_with("<!DOCTYPE html>") && page.contains("tile.exr"));
     assert!(page.contains("data:image/png;base64,") && !page.contains("src=\"http"));
     assert!(folder.read("heat.png").starts_with(b"\x89PNG"));
-    let text = folder.done("check tile.exr");
+    assert!(page.contains("<b>75.0 %</b> missed <small>3</small>"), "{page}");
+    let text = folder.done("check tile.exr --cube cube");
+    assert!(text.contains("missed:               3   75.00 %  ΔE00 > 0.01"), "{text}");
     assert!(text.contains("fluorescence needed:  25.00 %"), "{text}");
     assert!(text.contains("1,1 (0.0000, 1.0000, 0.0000): nothing shows it"), "{text}");
 }
@@ -105,6 +115,7 @@ fn a_material_is_baked_and_read_back() {
     let told = folder.json("bake cube tile.exr -o tile.material.exr");
     assert_eq!((&told["form"], &told["channels"]), (&"material".into(), &6.into()));
     assert_eq!(told["bytes"], folder.read("tile.material.exr").len());
+    assert_eq!(told["kinds"], kinds(1, 1, 0, 2));
     let gray = folder.json("read tile.material.exr --at 0,0");
     assert_eq!((&gray["concentration"], &gray["dye"]), (&0.0.into(), &Value::Null));
     let magenta = folder.json("read tile.material.exr --at 1,0");
@@ -112,7 +123,10 @@ fn a_material_is_baked_and_read_back() {
     assert!(magenta["steepest_per_nm"].as_f64().unwrap() <= 0.01);
     let text = folder.done("read tile.material.exr --at 1,0");
     assert!(text.starts_with("texel:          1,0 of tile.material.exr\n"), "{text}");
-    folder.done("bake cube tile.exr -o fast.exr --fast --sample float");
+    let text = folder.done("bake cube tile.exr -o again.exr");
+    assert!(text.contains("missed:       2   50.00 %  ΔE00 > 0.01"), "{text}");
+    let fast = folder.json("bake cube tile.exr -o fast.exr --fast --sample float");
+    assert_eq!(fast["kinds"], Value::Null);
     let run = folder.run("lint tile.material.exr");
     assert_eq!(run.status, 1);
     assert!(

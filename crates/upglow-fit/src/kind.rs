@@ -1,7 +1,8 @@
 //! Kinds of material, as reports count them.
 
-use upglow::{Cube, FitRecord, Mixture, Node};
-use upglow_color::choices;
+use rayon::prelude::*;
+use upglow::{Cube, FitRecord, LookupError, Mixture, ModelOnGrid, Node};
+use upglow_color::{Colorimetry, Grid, LinearRgb, Xyz, choices, ciede2000};
 
 use crate::fit::{EXACT, Fit};
 
@@ -43,12 +44,43 @@ pub struct KindCounts {
     pub missed: u64,
 }
 
+/// The kinds of the blends of a cube, which are counted for each texel of a picture.
+///
+/// A blend is of the kind of its last node in the order of [`MaterialKind`]: with dyes if one of up to
+/// four nodes has dyes, steeper if one is steeper than its limit. Where the nodes match their colors, so
+/// do their blends. Where one misses, the blend is measured: it is missed if it is more than
+/// 0.01 ΔE00 from its own color.
+#[derive(Clone, Debug)]
+#[must_use]
+pub struct BlendKinds<'c> {
+    cube: &'c Cube,
+    colorimetry: Colorimetry,
+    /// `[blue][green][red]`.
+    parts: Vec<BlendPart>,
+    /// The kind of all blends in a cell, by its darkest node, if its nodes match and are of one kind. Most
+    /// cells are so, and their colors need neither weights nor differences.
+    cells: Vec<Option<MaterialKind>>,
+}
+
+/// A node, as a part of blends.
+#[derive(Clone, Copy, Debug)]
+struct BlendPart {
+    /// The kind of the node if it matches its color.
+    kind: MaterialKind,
+    is_missed: bool,
+    color: Xyz,
+}
+
 impl MaterialKind {
-    /// The kind of a stored material of `cube`. One whose difference is NaN was not measured, and is not
-    /// counted as missed.
+    /// The kind of a material of `cube`: a node, or the single material that was found for a texel. One
+    /// whose difference is NaN was not measured, and is not counted as missed.
     pub fn of_node(node: &Node, cube: &Cube) -> Self {
+        Self::of([Self::slope_and_glow(node, cube)], node.de2000.into(), cube.fit())
+    }
+
+    fn slope_and_glow(node: &Node, cube: &Cube) -> (f64, bool) {
         let glows = node.material(cube.model()).fluorescence.dose() > 0.0;
-        Self::of([(node.edge().slope_per_nm.abs(), glows)], node.de2000.into(), cube.fit())
+        (node.edge().slope_per_nm.abs(), glows)
     }
 
     /// The kind of a fit under the limits of `record`.
@@ -82,17 +114,84 @@ impl MaterialKind {
         if de2000 > EXACT {
             return Self::Missed;
         }
-        let kind_of_part = |(slope_per_nm, glows): (f64, bool)| {
-            let limit = if glows { fit.slope_under_dyes_per_nm } else { fit.slope_max_per_nm };
-            match limit {
-                Some(limit) if slope_per_nm > limit => Self::Steep,
-                _ if glows => Self::Dyed,
-                _ => Self::Reflectance,
-            }
-        };
-        let kinds = parts.into_iter().map(kind_of_part);
-        kinds.max_by_key(|kind| *kind as u8).unwrap_or(Self::Reflectance)
+        parts.into_iter().map(|part| Self::of_part(part, fit)).fold(Self::Reflectance, Self::or)
     }
+
+    /// The kind of a part that matches.
+    fn of_part((slope_per_nm, glows): (f64, bool), fit: &FitRecord) -> Self {
+        let limit = if glows { fit.slope_under_dyes_per_nm } else { fit.slope_max_per_nm };
+        match limit {
+            Some(limit) if slope_per_nm > limit => Self::Steep,
+            _ if glows => Self::Dyed,
+            _ => Self::Reflectance,
+        }
+    }
+
+    /// The later of two.
+    fn or(self, other: Self) -> Self {
+        if other as u8 > self as u8 { other } else { self }
+    }
+}
+
+impl<'c> BlendKinds<'c> {
+    /// Prepares for the colors of a cube, on all threads of the current rayon pool.
+    pub fn new(cube: &'c Cube) -> Self {
+        let colorimetry = cube.contract().on(Grid::FIT);
+        let sums = ModelOnGrid::new(cube.model(), &colorimetry);
+        let part = |node: &Node| BlendPart {
+            kind: MaterialKind::of_part(MaterialKind::slope_and_glow(node, cube), cube.fit()),
+            is_missed: MaterialKind::of_node(node, cube) == MaterialKind::Missed,
+            color: sums.color(node.material(cube.model())),
+        };
+        let parts: Vec<BlendPart> = cube.nodes().par_iter().map(part).collect();
+        let cells = (0..parts.len()).map(|darkest| kind_of_cell(cube, &parts, darkest)).collect();
+        Self { cube, colorimetry, parts, cells }
+    }
+
+    /// The kind of the blend of a color.
+    ///
+    /// # Errors
+    ///
+    /// [`LookupError::Outside`] if a component is not a number in 0..=1.
+    pub fn of(&self, rgb: LinearRgb) -> Result<MaterialKind, LookupError> {
+        if let Some(kind) = self.cells[self.cube.cell(rgb)?] {
+            return Ok(kind);
+        }
+        let corners = self.cube.corners(rgb)?;
+        let (mut kind, mut may_miss) = (MaterialKind::Reflectance, false);
+        for (index, weight) in corners {
+            if weight > 0.0 {
+                let part = &self.parts[index];
+                kind = kind.or(part.kind);
+                may_miss |= part.is_missed;
+            }
+        }
+        let is_missed = may_miss && self.de2000(rgb, &corners) > EXACT;
+        Ok(if is_missed { MaterialKind::Missed } else { kind })
+    }
+
+    /// CIEDE2000 of the blend of `corners` from its color.
+    fn de2000(&self, rgb: LinearRgb, corners: &[(usize, f64); 4]) -> f64 {
+        let mut blend = Xyz([0.0; 3]);
+        for &(index, weight) in corners {
+            blend += weight * self.parts[index].color;
+        }
+        let colors = [self.colorimetry.xyz_from_rgb(rgb), blend];
+        let [target, blend] = colors.map(|xyz| self.colorimetry.lab_from_xyz(xyz));
+        ciede2000(target, blend)
+    }
+}
+
+/// The kind of all blends in a cell, if it has only one.
+fn kind_of_cell(cube: &Cube, parts: &[BlendPart], darkest: usize) -> Option<MaterialKind> {
+    let n = cube.resolution();
+    if cube.coordinates(darkest).contains(&(n - 1)) {
+        return None;
+    }
+    let node = |i: usize| darkest + (i / 4 * n + i / 2 % 2) * n + i % 2;
+    let mut nodes = (0..8).map(|i| &parts[node(i)]);
+    let kind = parts[darkest].kind;
+    nodes.all(|part| part.kind == kind && !part.is_missed).then_some(kind)
 }
 
 impl KindCounts {
@@ -104,6 +203,14 @@ impl KindCounts {
             MaterialKind::Steep => self.steep += 1,
             MaterialKind::Missed => self.missed += 1,
         }
+    }
+
+    /// Adds the counts of others.
+    pub fn join(&mut self, other: &Self) {
+        self.reflectance += other.reflectance;
+        self.dyed += other.dyed;
+        self.steep += other.steep;
+        self.missed += other.missed;
     }
 
     /// The count of each kind, in the order of the rule of choosing.
@@ -129,6 +236,11 @@ impl FromIterator<MaterialKind> for KindCounts {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cube::build_cube;
+    use crate::preset::Preset;
+    use crate::progress::Unwatched;
+    use upglow::Interpolation;
+    use upglow_color::Contract;
 
     #[test]
     fn a_kind_follows_from_slope_dye_and_difference() {
@@ -154,7 +266,35 @@ mod tests {
     #[test]
     fn kinds_are_counted() {
         use MaterialKind::{Dyed, Missed, Reflectance, Steep};
-        let counts: KindCounts = [Steep, Missed, Dyed, Missed, Reflectance].into_iter().collect();
-        assert_eq!(counts.each().map(|(_, count)| count), [1, 1, 1, 2]);
+        let mut counts: KindCounts = [Steep, Missed, Dyed, Missed].into_iter().collect();
+        counts.join(&[Reflectance, Dyed].into_iter().collect());
+        assert_eq!(counts.each().map(|(_, count)| count), [1, 2, 1, 2]);
+    }
+
+    #[test]
+    fn the_kind_of_a_blend_is_that_of_the_mixture_that_is_looked_up() {
+        let preset = Preset::Natural;
+        let (model, options) = (preset.model(), preset.options());
+        let contract = Contract::default();
+        let cube = build_cube(&contract, &model, options, 3, &Unwatched).unwrap();
+        let kinds = BlendKinds::new(&cube);
+        let colorimetry = contract.on(Grid::FIT);
+        let sums = ModelOnGrid::new(&model, &colorimetry);
+        let mut counts = KindCounts::default();
+        for rgb in (0..1000).map(|i| [i / 100, i / 10 % 10, i % 10].map(|v| f64::from(v) / 9.0)) {
+            let rgb = LinearRgb(rgb);
+            let mixture = cube.lookup(rgb, Interpolation::Blend).unwrap();
+            let colors = [colorimetry.xyz_from_rgb(rgb), mixture.color(&sums)];
+            let [target, found] = colors.map(|xyz| colorimetry.lab_from_xyz(xyz));
+            let kind = MaterialKind::of_mixture(&mixture, ciede2000(target, found), cube.fit());
+            assert_eq!(kinds.of(rgb), Ok(kind), "{rgb:?}");
+            counts.add(kind);
+        }
+        assert!(counts.each().iter().all(|(_, count)| *count > 0), "{counts:?}");
+        for (index, node) in cube.nodes().iter().enumerate() {
+            let kind = MaterialKind::of_node(node, &cube);
+            assert_eq!(kinds.of(cube.node_rgb(index)), Ok(kind), "{index}");
+        }
+        assert!(kinds.of(LinearRgb([0.5, 1.1, 0.5])).is_err());
     }
 }

@@ -50,7 +50,7 @@ pub use coefficients::{fit_coefficients, round_trip};
 pub use cube::{BuildError, CubeSummary, Spread, build_cube};
 pub use fit::Fit;
 pub use fitter::{ColorError, Fitter};
-pub use kind::{KindCounts, MaterialKind};
+pub use kind::{BlendKinds, KindCounts, MaterialKind};
 pub use options::{FitOptions, FitOptionsError, GivenOptions, Method};
 pub use polish::Polisher;
 pub use preset::Preset;

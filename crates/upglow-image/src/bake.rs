@@ -14,7 +14,7 @@ use std::path::Path;
 use rayon::prelude::*;
 use upglow::{Cube, LookupError};
 use upglow_color::{Grid, Illuminant, LinearRgb};
-use upglow_fit::{FitOptionsError, StandingTable, Stopped, Watch};
+use upglow_fit::{FitOptionsError, KindCounts, StandingTable, Stopped, Watch};
 
 use self::compact::CompactMaker;
 use self::maker::Maker;
@@ -81,6 +81,10 @@ pub struct Baked {
     pub channels: usize,
     /// Texels that a repair changed.
     pub repaired: u64,
+    /// Texels of each kind of material under the cube's own light: of the single material of a texel where
+    /// the form has one, else of its blend. `None` for materials that are interpolated only, because their
+    /// differences are not measured.
+    pub kinds: Option<KindCounts>,
     /// Size of the file, bytes.
     pub bytes: u64,
 }
@@ -193,13 +197,16 @@ impl<'c> Baker<'c> {
             _ => None,
         };
         let mut writer = ExrWriter::create(output, self.description(picture.picture()))?;
-        let mut baked = Baked { size, channels: 0, repaired: 0, bytes: 0 };
+        let mut baked = Baked { size, channels: 0, repaired: 0, kinds: None, bytes: 0 };
         picture.for_each_band(self.band_rows(size[0]), "baking", watch, |mut band| {
             match &repairer {
                 Some(repairer) => baked.repaired += repairer.repair(&mut band.rgb),
-                None => refuse_outside(&band, self.cube)?,
+                None => refuse_outside(&band)?,
             }
-            let planes = self.planes(&band);
+            let (planes, kinds) = self.planes(&band);
+            if let Some(kinds) = kinds {
+                baked.kinds.get_or_insert_default().join(&kinds);
+            }
             baked.channels = planes.len();
             writer.write_band(&planes.iter().map(Vec::as_slice).collect::<Vec<_>>())?;
             Ok::<_, BakeError>(())
@@ -233,22 +240,22 @@ impl<'c> Baker<'c> {
         Ok(Repairer { repair, greatest, table })
     }
 
-    /// The channels of a band, alpha last.
-    fn planes(&self, band: &Band) -> Vec<Vec<f32>> {
+    /// The channels of a band, alpha last, and the kinds of its materials.
+    fn planes(&self, band: &Band) -> (Vec<Vec<f32>>, Option<KindCounts>) {
         let count = self.channels.len();
-        let rows: Vec<Vec<f32>> = band
+        let rows: Vec<(Vec<f32>, Option<KindCounts>)> = band
             .rgb
             .par_chunks(band.width)
             .map(|rgb| {
                 let mut values = vec![0.0; count * rgb.len()];
                 let mut planes: Vec<&mut [f32]> = values.chunks_mut(rgb.len()).collect();
-                self.maker.fill(rgb, &mut planes);
-                values
+                let kinds = self.maker.fill(rgb, &mut planes);
+                (values, kinds)
             })
             .collect();
         let of_channel = |channel: usize| {
             let range = channel * band.width..(channel + 1) * band.width;
-            rows.iter().flat_map(|row| &row[range.clone()]).copied().collect()
+            rows.iter().flat_map(|(row, _)| &row[range.clone()]).copied().collect()
         };
         let mut planes: Vec<Vec<f32>> = (0..count).into_par_iter().map(of_channel).collect();
         if let Some(values) = &band.alpha {
@@ -259,7 +266,11 @@ impl<'c> Baker<'c> {
             }
             planes.push(values.clone());
         }
-        planes
+        let kinds = rows.iter().filter_map(|(_, kinds)| *kinds).reduce(|mut all, kinds| {
+            all.join(&kinds);
+            all
+        });
+        (planes, kinds)
     }
 
     fn description(&self, picture: &Picture) -> ExrDescription {
@@ -280,8 +291,8 @@ impl<'c> Baker<'c> {
     }
 }
 
-fn refuse_outside(band: &Band, cube: &Cube) -> Result<(), BakeError> {
-    let refusal = |rgb: &[f32; 3]| cube.corners(LinearRgb(rgb.map(f64::from))).err();
+fn refuse_outside(band: &Band) -> Result<(), BakeError> {
+    let refusal = |rgb: &[f32; 3]| LookupError::check(LinearRgb(rgb.map(f64::from))).err();
     let numbered = band.rgb.par_iter().enumerate();
     let first = numbered.find_map_first(|(i, rgb)| Some((i, refusal(rgb)?)));
     let Some((first, source)) = first else { return Ok(()) };

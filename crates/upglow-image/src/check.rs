@@ -62,7 +62,7 @@ pub struct Checker<'c> {
     /// A cube and the name of its file.
     cube: Option<(&'c Cube, String)>,
     /// The limits of each RGB space so far, for further pictures.
-    known: Vec<Limits>,
+    known: Vec<Limits<'c>>,
 }
 
 /// Why a picture cannot be checked.
@@ -150,14 +150,14 @@ impl<'c> Checker<'c> {
 
 /// The check of one picture, whose rows are added once, from top to bottom.
 struct Pass<'a> {
-    limits: &'a Limits,
+    limits: &'a Limits<'a>,
     size: [usize; 2],
     maps: Maps,
     findings: Findings,
 }
 
 impl<'a> Pass<'a> {
-    fn new(limits: &'a Limits, size: [usize; 2]) -> Self {
+    fn new(limits: &'a Limits<'a>, size: [usize; 2]) -> Self {
         Self { limits, size, maps: Maps::new(size), findings: Findings::default() }
     }
 
@@ -233,11 +233,11 @@ mod tests {
         (0..WIDTH * HEIGHT).map(texel).collect()
     }
 
-    fn limits() -> Limits {
+    fn limits() -> Limits<'static> {
         Limits::new(Contract::default(), None)
     }
 
-    fn report(limits: &Limits, rgb: &[[f32; 3]], rows_at_once: usize) -> CheckReport {
+    fn report(limits: &Limits<'_>, rgb: &[[f32; 3]], rows_at_once: usize) -> CheckReport {
         let mut pass = Pass::new(limits, [WIDTH, HEIGHT]);
         for (i, band) in rgb.chunks(rows_at_once * WIDTH).enumerate() {
             pass.add(i * rows_at_once, band);
@@ -354,7 +354,7 @@ mod tests {
     #[test]
     fn a_cube_with_the_picture_as_nodes_matches_it_within_the_stored_difference() {
         use upglow::{DyeModel, DyeOptions, DyeSet, Model};
-        use upglow_fit::{Preset, Unwatched, build_cube};
+        use upglow_fit::{CubeSummary, Preset, Unwatched, build_cube};
         let model = DyeModel::new(DyeSet::named("konig8").unwrap(), DyeOptions::default()).unwrap();
         let contract = Contract::default();
         let model = Model::Dyes(model);
@@ -372,6 +372,7 @@ mod tests {
         // Single precision, where a small XYZ is magnified by ΔE00.
         let miss = (found.greatest_de2000 - stored.fold(0.0, f64::max)).abs();
         assert!(miss < 0.01, "{found:?}");
+        assert_eq!(found.kinds, CubeSummary::of(&cube).kinds);
         let other = Contract { adaptation: upglow_color::Adaptation::None, ..contract };
         let refused = Checker::new(other, Assumed::default()).with_cube(&cube, "cube".into());
         assert!(matches!(refused, Err(CheckError::Contract)));

@@ -14,7 +14,9 @@ use upglow::{
 use upglow_color::{
     Colorimetry, Contract, Grid, Illuminant, LinearRgb, RgbSpace, Xyz, ciede2000, lab_from_xyz,
 };
-use upglow_fit::{CubeSummary, Polisher, Preset, Unwatched, build_cube};
+use upglow_fit::{
+    BlendKinds, CubeSummary, KindCounts, MaterialKind, Polisher, Preset, Unwatched, build_cube,
+};
 use upglow_image::{
     Assumed, BakeError, BakeOptions, Baked, Baker, Encoding, ExamplePicture, ExrDescription,
     ExrReader, ExrWriter, Form, Lint, MaterialPicture, Repair, Sample, SpectralPicture,
@@ -263,6 +265,34 @@ fn many_colors() -> Vec<[f32; 3]> {
         places.flat_map(move |y| (0..width).step_by(APART).map(move |x| picture.texel([x, y])))
     });
     pictures.chain(random_colors(1000)).collect()
+}
+
+#[test]
+fn the_kinds_of_materials_are_counted_in_every_form() {
+    let desk = Desk::new();
+    let rgb: Vec<[f32; 3]> =
+        (0..cube().nodes().len()).map(|i| single(cube().node_rgb(i).0)).collect();
+    let input = desk.picture("nodes.exr", 40, &rgb, None);
+    let kinds = |form| {
+        let found = bake(cube(), form, options(Sample::Float), &input, &desk.path("out.exr"));
+        found.unwrap().kinds
+    };
+    // Nodes are blends of themselves, but for the rounding of their RGB.
+    let inner = BlendKinds::new(cube());
+    let blends: KindCounts =
+        rgb.iter().map(|rgb| inner.of(LinearRgb(rgb.map(f64::from))).unwrap()).collect();
+    for form in [spectral(Grid::try_new(400, 700, 100).unwrap(), false), radiance("A")] {
+        assert_eq!(kinds(form.clone()), Some(blends), "{form:?}");
+    }
+    let mut polished = vec![Node::default(); rgb.len()];
+    Polisher::new(cube()).unwrap().polish(&rgb, &mut polished).unwrap();
+    let polished = polished.iter().map(|node| MaterialKind::of_node(node, cube())).collect();
+    for form in [POLISHED, spectral(tens(), true)] {
+        assert_eq!(kinds(form.clone()), Some(polished), "{form:?}");
+    }
+    assert_eq!(kinds(Form::InterpolatedMaterial), None);
+    let some_of_each = [blends, polished].map(|kinds| kinds.dyed > 0 && kinds.missed > 0);
+    assert_eq!(some_of_each, [true; 2]);
 }
 
 #[test]

@@ -18,7 +18,7 @@ use crate::material::film_model::FilmModel;
 use crate::material::mixture::Mixture;
 use crate::material::model::Model;
 use crate::material::{Fluorescence, Material};
-use interpolation::{Interpolation, tetrahedron};
+use interpolation::{Interpolation, cell, tetrahedron};
 
 /// Materials for every node of a regular grid over linear RGB 0..=1, in single precision.
 ///
@@ -110,6 +110,17 @@ pub enum LookupError {
 }
 
 impl LookupError {
+    /// Whether a color has a material in every cube.
+    ///
+    /// # Errors
+    ///
+    /// [`LookupError::Outside`] if a component is not a number in 0..=1.
+    #[inline]
+    pub fn check(rgb: LinearRgb) -> Result<(), Self> {
+        let is_inside = rgb.0.iter().all(|v| (0.0..=1.0).contains(v));
+        if is_inside { Ok(()) } else { Err(Self::outside(rgb.0)) }
+    }
+
     /// The error for a color with a component that is not in 0..=1.
     #[cold]
     pub(crate) fn outside(rgb: [f64; 3]) -> Self {
@@ -255,15 +266,27 @@ impl Cube {
         self.nodes[index].material(&self.model)
     }
 
+    /// The number of the darkest of the eight nodes of the cell around a color; [`Self::corners`] are four
+    /// of the eight.
+    ///
+    /// # Errors
+    ///
+    /// [`LookupError::Outside`] if a component is not a number in 0..=1.
+    #[inline]
+    pub fn cell(&self, rgb: LinearRgb) -> Result<usize, LookupError> {
+        LookupError::check(rgb)?;
+        let n = self.resolution;
+        let [red, green, blue] = cell(n, rgb);
+        Ok((blue * n + green) * n + red)
+    }
+
     /// Numbers and weights of the four nodes around a color.
     ///
     /// # Errors
     ///
     /// [`LookupError::Outside`] if a component is not a number in 0..=1.
     pub fn corners(&self, rgb: LinearRgb) -> Result<[(usize, f64); 4], LookupError> {
-        if !rgb.0.iter().all(|v| (0.0..=1.0).contains(v)) {
-            return Err(LookupError::outside(rgb.0));
-        }
+        LookupError::check(rgb)?;
         let n = self.resolution;
         Ok(tetrahedron(n, rgb).map(|([b, g, r], weight)| ((b * n + g) * n + r, weight)))
     }

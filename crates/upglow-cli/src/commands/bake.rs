@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use serde::Serialize;
 use upglow_color::{Choice, Grid};
+use upglow_fit::KindCounts;
 use upglow_image::{BakeError, BakeOptions, Baker, Form, PictureError};
 use upglow_terminal::{Console, Failure, Report};
 
@@ -22,6 +23,8 @@ struct BakeReport {
     channels: usize,
     /// Texels that `--repair` changed.
     repaired: u64,
+    /// Texels of each kind of material; `None` with `--fast`, which measures no material.
+    kinds: Option<KindCounts>,
     bytes: u64,
     time_s: f64,
 }
@@ -50,6 +53,7 @@ pub(crate) fn run(args: &BakeArgs, console: &Console) -> Result<(), Failure> {
             height: baked.size[1],
             channels: baked.channels,
             repaired: baked.repaired,
+            kinds: baked.kinds,
             bytes: baked.bytes,
             time_s: start.elapsed().as_secs_f64(),
         })?;
@@ -140,10 +144,11 @@ impl Report for BakeReport {
         if *repaired > 0 {
             lines.add("repaired", format_args!("{repaired} texels"));
         }
-        lines
-            .add("form", format_args!("{form}, {channels} channels"))
-            .add("time", format_args!("{time_s:.1} s"))
-            .add_file("file", &self.file, self.bytes);
+        lines.add("form", format_args!("{form}, {channels} channels"));
+        if let Some(kinds) = &self.kinds {
+            lines.add_kinds(kinds);
+        }
+        lines.add("time", format_args!("{time_s:.1} s")).add_file("file", &self.file, self.bytes);
         lines.to_string()
     }
 }

@@ -132,6 +132,7 @@ impl Report for PictureReport {
                     percent(cube.within_two),
                 ),
             );
+            lines.add_kinds(&cube.kinds);
         }
         for (name, path) in [("heat map", &self.heat_map), ("page", &self.page)] {
             if let Some(path) = path {

@@ -2,7 +2,7 @@
 
 use upglow::{Cube, Interpolation, Mixing, Mixture, Model, Node};
 use upglow_color::{Grid, LinearRgb};
-use upglow_fit::Polisher;
+use upglow_fit::{KindCounts, MaterialKind, Polisher};
 
 use super::maker::Maker;
 use super::radiance::{NAMES, RadianceMaker};
@@ -53,21 +53,27 @@ impl<'c> CompactMaker<'c> {
         })
     }
 
-    /// Passes the mixture that is stored for each texel to `store`, in the order of the texels.
-    fn for_each_mixture(&self, rgb: &[[f32; 3]], mut store: impl FnMut(&Mixture<'_>)) {
+    /// Passes the mixture that is stored for each texel to `store`, in the order of the texels. Returns
+    /// the kinds of the mixtures.
+    fn for_each_mixture(
+        &self,
+        rgb: &[[f32; 3]],
+        mut store: impl FnMut(&Mixture<'_>),
+    ) -> KindCounts {
         let Some(polisher) = &self.polisher else {
             for rgb in rgb {
                 let color = LinearRgb(rgb.map(f64::from));
                 let mixture = self.cube.lookup(color, Interpolation::Blend);
                 store(&mixture.expect("texels outside were repaired or refused"));
             }
-            return;
+            return self.preview.kinds(rgb);
         };
         let mut nodes = vec![Node::default(); rgb.len()];
         polisher.polish(rgb, &mut nodes).expect("as many materials as texels");
-        for node in nodes {
+        for node in &nodes {
             store(&Mixture::of(self.cube.model(), node.material(self.cube.model())));
         }
+        nodes.iter().map(|node| MaterialKind::of_node(node, self.cube)).collect()
     }
 }
 
@@ -95,16 +101,17 @@ impl Maker for CompactMaker<'_> {
         }
     }
 
-    fn fill(&self, rgb: &[[f32; 3]], planes: &mut [&mut [f32]]) {
+    fn fill(&self, rgb: &[[f32; 3]], planes: &mut [&mut [f32]]) -> Option<KindCounts> {
         let (preview, stored) = planes.split_at_mut(NAMES.len());
         self.preview.fill_rgb(rgb, preview);
         let mut texel = 0;
-        self.for_each_mixture(rgb, |mixture| {
+        let kinds = self.for_each_mixture(rgb, |mixture| {
             let values = self.layout.encode(mixture).expect("the form was chosen for the model");
             for (plane, value) in stored.iter_mut().zip(values) {
                 plane[texel] = value;
             }
             texel += 1;
         });
+        Some(kinds)
     }
 }

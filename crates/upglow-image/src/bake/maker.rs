@@ -2,6 +2,8 @@
 
 use std::fmt::Debug;
 
+use upglow_fit::KindCounts;
+
 use crate::exr::attribute::Attributes;
 use crate::exr::header::Sample;
 use crate::exr::writer::Compression;
@@ -30,6 +32,7 @@ pub(super) trait Maker: Debug + Sync {
         requested
     }
 
-    /// Fills one row of each channel, `[channel][texel]`.
-    fn fill(&self, rgb: &[[f32; 3]], planes: &mut [&mut [f32]]);
+    /// Fills one row of each channel, `[channel][texel]`. Returns the kinds of the row's materials, if
+    /// their differences from the colors are measured.
+    fn fill(&self, rgb: &[[f32; 3]], planes: &mut [&mut [f32]]) -> Option<KindCounts>;
 }

@@ -2,7 +2,7 @@
 
 use half::f16;
 use upglow::{Cube, Model, Node};
-use upglow_fit::{FitOptionsError, Polisher};
+use upglow_fit::{FitOptionsError, KindCounts, MaterialKind, Polisher};
 
 use super::attributes;
 use super::maker::Maker;
@@ -84,7 +84,7 @@ impl Maker for MaterialMaker<'_> {
         attributes
     }
 
-    fn fill(&self, rgb: &[[f32; 3]], planes: &mut [&mut [f32]]) {
+    fn fill(&self, rgb: &[[f32; 3]], planes: &mut [&mut [f32]]) -> Option<KindCounts> {
         let mut nodes = vec![Node::default(); rgb.len()];
         let made = if self.is_polished {
             self.polisher.polish(rgb, &mut nodes)
@@ -99,6 +99,8 @@ impl Maker for MaterialMaker<'_> {
                 plane[texel] = value;
             }
         }
+        let kinds = || nodes.iter().map(|node| MaterialKind::of_node(node, self.cube)).collect();
+        self.is_polished.then(kinds)
     }
 }
 

@@ -2,7 +2,8 @@
 
 use upglow::{ColorTable, Cube};
 use upglow_color::rounding::to_single;
-use upglow_color::{Grid, Illuminant, Matrix3};
+use upglow_color::{Grid, Illuminant, LinearRgb, Matrix3};
+use upglow_fit::{BlendKinds, KindCounts};
 
 use super::attributes;
 use super::maker::Maker;
@@ -14,6 +15,7 @@ pub(super) struct RadianceMaker<'c> {
     cube: &'c Cube,
     light: Illuminant,
     table: ColorTable,
+    kinds: BlendKinds<'c>,
     rgb_from_xyz: Matrix3,
     white: [f64; 3],
 }
@@ -25,13 +27,14 @@ impl<'c> RadianceMaker<'c> {
         Self {
             cube,
             table: cube.color_table(&colorimetry),
+            kinds: BlendKinds::new(cube),
             rgb_from_xyz: colorimetry.rgb_from_xyz_matrix(),
             white: colorimetry.rgb_from_xyz(colorimetry.white()).0,
             light,
         }
     }
 
-    /// Red, green, blue of each texel.
+    /// Red, green, blue of each texel's blend.
     pub(super) fn fill_rgb(&self, rgb: &[[f32; 3]], planes: &mut [&mut [f32]]) {
         let mut colors = vec![[0.0; 3]; rgb.len()];
         self.table.xyz(rgb, &mut colors).expect("as many colors as texels");
@@ -39,6 +42,12 @@ impl<'c> RadianceMaker<'c> {
             let color = self.rgb_from_xyz * xyz.map(f64::from);
             (0..3).for_each(|k| planes[k][i] = to_single(color[k]));
         }
+    }
+
+    /// The kinds of the texels' blends.
+    pub(super) fn kinds(&self, rgb: &[[f32; 3]]) -> KindCounts {
+        let kind = |rgb: &[f32; 3]| self.kinds.of(LinearRgb(rgb.map(f64::from)));
+        rgb.iter().map(|rgb| kind(rgb).expect("texels outside were repaired or refused")).collect()
     }
 }
 
@@ -67,7 +76,8 @@ impl Maker for RadianceMaker<'_> {
         true
     }
 
-    fn fill(&self, rgb: &[[f32; 3]], planes: &mut [&mut [f32]]) {
+    fn fill(&self, rgb: &[[f32; 3]], planes: &mut [&mut [f32]]) -> Option<KindCounts> {
         self.fill_rgb(rgb, planes);
+        Some(self.kinds(rgb))
     }
 }

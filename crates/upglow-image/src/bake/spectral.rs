@@ -3,6 +3,7 @@
 use upglow::{Bispectral, Cube, Interpolation, Model};
 use upglow_color::rounding::to_single;
 use upglow_color::{Grid, LinearRgb};
+use upglow_fit::KindCounts;
 
 use super::attributes;
 use super::maker::Maker;
@@ -65,7 +66,7 @@ impl Maker for SpectralMaker<'_> {
         Compression::Zips
     }
 
-    fn fill(&self, rgb: &[[f32; 3]], planes: &mut [&mut [f32]]) {
+    fn fill(&self, rgb: &[[f32; 3]], planes: &mut [&mut [f32]]) -> Option<KindCounts> {
         let (preview, spectral) = planes.split_at_mut(NAMES.len());
         self.preview.fill_rgb(rgb, preview);
         let (bands, moved) = spectral.split_at_mut(self.grid.len());
@@ -88,5 +89,6 @@ impl Maker for SpectralMaker<'_> {
                 }
             }
         }
+        Some(self.preview.kinds(rgb))
     }
 }

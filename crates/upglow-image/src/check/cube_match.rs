@@ -1,7 +1,9 @@
 //! How well a cube's materials match a picture.
 
-use upglow::ColorTable;
 use upglow_color::{Colorimetry, LinearRgb, Xyz, ciede2000};
+use upglow_fit::{KindCounts, MaterialKind};
+
+use super::limits::Blends;
 
 /// How well a cube's mixtures match the texels of a picture whose values are in 0..=1.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,6 +22,8 @@ pub struct CubeMatch {
     pub mean_de2000: f64,
     /// Greatest ΔE00.
     pub greatest_de2000: f64,
+    /// Texels of each kind of material.
+    pub kinds: KindCounts,
 }
 
 /// Sums of differences, as integers so that the order of addition does not matter.
@@ -30,6 +34,7 @@ pub(super) struct DifferenceSums {
     within_two: u64,
     sum: u128,
     greatest: f64,
+    kinds: KindCounts,
 }
 
 /// The unit of the sum of ΔE00: finer than the single precision of the cube.
@@ -42,34 +47,38 @@ impl DifferenceSums {
         self.within_two += other.within_two;
         self.sum += other.sum;
         self.greatest = self.greatest.max(other.greatest);
+        self.kinds.join(&other.kinds);
     }
 
-    /// Adds the differences of texels from the cube's mixtures.
+    /// Adds the differences of texels from the cube's blends, and the kinds of these.
     pub(super) fn add_texels(
         &mut self,
-        cube: &ColorTable,
+        cube: &Blends<'_>,
         colorimetry: &Colorimetry,
         rgb: &[[f32; 3]],
     ) {
         let mut matched = vec![[0.0; 3]; rgb.len()];
-        cube.xyz(rgb, &mut matched).expect("there is room for each texel");
+        cube.colors.xyz(rgb, &mut matched).expect("there is room for each texel");
         for (rgb, matched) in rgb.iter().zip(matched) {
             // The table has NaN for colors outside 0..=1.
             if !matched[0].is_nan() {
-                let target = colorimetry.xyz_from_rgb(LinearRgb(rgb.map(f64::from)));
+                let rgb = LinearRgb(rgb.map(f64::from));
+                let kind = cube.kinds.of(rgb).expect("the table has a color for it");
+                let target = colorimetry.xyz_from_rgb(rgb);
                 let pair = [target, Xyz(matched.map(f64::from))];
                 let [target, matched] = pair.map(|xyz| colorimetry.lab_from_xyz(xyz));
-                self.add(ciede2000(target, matched));
+                self.add(ciede2000(target, matched), kind);
             }
         }
     }
 
-    fn add(&mut self, de2000: f64) {
+    fn add(&mut self, de2000: f64, kind: MaterialKind) {
         self.texels += 1;
         self.within_one += u64::from(de2000 <= 1.0);
         self.within_two += u64::from(de2000 <= 2.0);
         self.sum += u128::from(units(de2000));
         self.greatest = self.greatest.max(de2000);
+        self.kinds.add(kind);
     }
 
     pub(super) fn finish(&self, file: &str) -> CubeMatch {
@@ -81,6 +90,7 @@ impl DifferenceSums {
             within_two: self.within_two as f64 / texels,
             mean_de2000: self.sum as f64 * UNIT / texels,
             greatest_de2000: self.greatest,
+            kinds: self.kinds,
         }
     }
 }

@@ -7,6 +7,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
 use upglow_color::{Nearest, StandingKind};
+use upglow_fit::MaterialKind;
 
 use self::style::STYLE;
 use self::text::{escaped, grouped, percent, value};
@@ -271,11 +272,22 @@ fn worst_row(texel: &WorstTexel) -> String {
 }
 
 fn cube_match(found: &CubeMatch) -> String {
-    let CubeMatch { file, texels, within_one, within_two, mean_de2000, greatest_de2000 } = found;
+    let CubeMatch { file, texels, within_one, within_two, mean_de2000, greatest_de2000, kinds } =
+        found;
+    let item = |(kind, count): (MaterialKind, u64)| {
+        let share = count as f64 / (*texels).max(1) as f64;
+        format!(
+            "<li><b>{}</b> {} <small>{}</small></li>\n",
+            percent(share),
+            kind.label(),
+            grouped(count)
+        )
+    };
+    let kinds: String = kinds.each().into_iter().map(item).collect();
     format!(
         "<h3>Match with {}</h3>\n<p>Of {} texels in range its blends match <b>{}</b> within 1 ΔE00 \
          and <b>{}</b> within 2; the mean is {mean_de2000:.2}, the greatest \
-         {greatest_de2000:.2}.</p>\n",
+         {greatest_de2000:.2}.</p>\n<ul class=\"shares\">\n{kinds}</ul>\n",
         escaped(file),
         grouped(*texels),
         percent(*within_one),

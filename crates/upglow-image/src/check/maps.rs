@@ -53,7 +53,7 @@ impl Maps {
         &mut self,
         first_row: usize,
         band: &[[f32; 3]],
-        limits: &Limits,
+        limits: &Limits<'_>,
     ) -> Findings {
         let Self { width, side, columns, .. } = *self;
         let rows = first_row..first_row + band.len() / width;
@@ -94,7 +94,7 @@ fn check_blocks<'b>(
     side: usize,
     left: usize,
     rows: impl Iterator<Item = (usize, &'b [[f32; 3]])>,
-    limits: &Limits,
+    limits: &Limits<'_>,
 ) -> Findings {
     let mut texel_check = TexelCheck { limits, last: None, findings: Findings::default() };
     for (y, texels) in rows {
@@ -111,7 +111,7 @@ fn check_blocks<'b>(
 
 /// Checks one texel after another.
 struct TexelCheck<'a> {
-    limits: &'a Limits,
+    limits: &'a Limits<'a>,
     /// The previous color: pictures contain many runs of the same color.
     last: Option<([f32; 3], Estimate)>,
     findings: Findings,

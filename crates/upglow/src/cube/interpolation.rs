@@ -89,11 +89,10 @@ fn signs_differ(corners: &Weighted) -> bool {
 /// that grays are mixtures of grays. `rgb` must be in 0..=1.
 pub(crate) fn tetrahedron(resolution: usize, rgb: LinearRgb) -> [([usize; 3], f64); 4] {
     let last = (resolution - 1) as f64;
-    let (mut corner, mut fraction) = ([0; 3], [0.0; 3]);
+    let corner = cell(resolution, rgb);
+    let mut fraction = [0.0; 3];
     for k in 0..3 {
-        let position = rgb.0[k] * last;
-        corner[k] = lower_node(position, resolution);
-        fraction[k] = position - corner[k] as f64;
+        fraction[k] = rgb.0[k] * last - corner[k] as f64;
     }
     // From the dark corner one axis at a time, the largest fraction first. Ranks replace
     // branches, because processors cannot predict the order of an image's channels.
@@ -114,6 +113,13 @@ pub(crate) fn tetrahedron(resolution: usize, rgb: LinearRgb) -> [([usize; 3], f6
         (node(2), sorted[1] - sorted[2]),
         (node(3), sorted[2]),
     ]
+}
+
+/// The red, green and blue index of the darkest node of the cell that holds a color.
+#[inline]
+pub(crate) fn cell(resolution: usize, rgb: LinearRgb) -> [usize; 3] {
+    let last = (resolution - 1) as f64;
+    rgb.0.map(|value| lower_node(value * last, resolution))
 }
 
 /// The node at or below a position in 0..=resolution − 1, and at most the last but one.
