@@ -41,7 +41,7 @@ pub enum BuildError {
 /// First a coarse lattice, each node alone; then, in two steps, the nodes between, each from the
 /// materials at the corners of its cell; then sweeps, as many as the options say, in which each node
 /// that missed its color tries the materials of its six neighbors; nodes of films also to lower their
-/// dose. Last, each node of a film takes, of its matches with at most twice the least dose, the one nearest
+/// dose. Last, each node of a film takes, of its matches with at most 1.5 times the least dose, the one nearest
 /// to its neighbors' materials. Each of these steps uses the neighbors' materials from before it, so the
 /// result does not depend on the number of threads.
 /// [`Method::Exhaustive`](crate::Method::Exhaustive) and the methods of König et al. 2020 fit every node

@@ -97,7 +97,11 @@ impl Fitter {
                 return Err(ColorError::Outside { channel, value });
             }
         }
-        Ok(self.fit_among(rgb, &[]))
+        let fit = self.fit_among(rgb, &[]);
+        if !self.is_film() || self.options.method != Method::Search || self.is_final(&fit) {
+            return Ok(fit);
+        }
+        Ok(self.lightened(rgb, fit))
     }
 
     /// The material of `rgb`, which is in 0..=1, with those of colors around it as starts.
@@ -136,10 +140,31 @@ impl Fitter {
 
     /// Matches of `rgb` near the materials of its neighbors, no steeper than the limit that `known` needed.
     pub(crate) fn matches_near(&self, rgb: LinearRgb, known: Fit, neighbors: &[Fit]) -> Vec<Fit> {
-        let slope = known.reflectance.slope_per_nm.abs();
+        self.job_at(rgb, self.stage_of(&known)).matches_near(known, neighbors)
+    }
+
+    /// The best of `known` and of fits from many starts, within the first limit under dyes that leads to a
+    /// match.
+    fn lightened(&self, rgb: LinearRgb, known: Fit) -> Fit {
+        let own_limit = self.stage_of(&known).slope_limit_per_nm;
+        let mut nearest = known;
+        for stage in &self.with_dyes {
+            let found = self.job_at(rgb, stage).film_from_many_starts();
+            let is_gentler = stage.slope_limit_per_nm < own_limit;
+            let best = if is_gentler { found } else { better(Some(known), found) };
+            if best.is_matched() {
+                return best;
+            }
+            nearest = better(Some(nearest), best);
+        }
+        nearest
+    }
+
+    /// The stage of the first limit under dyes that a reflectance keeps.
+    fn stage_of(&self, fit: &Fit) -> &Stage {
+        let slope = fit.reflectance.slope_per_nm.abs();
         let is_wide = |stage: &&Stage| slope <= stage.slope_limit_per_nm * (1.0 + SLOPE_MARGIN);
-        let stage = self.with_dyes.iter().find(is_wide).unwrap_or(self.main());
-        self.job_at(rgb, stage).matches_near(known, neighbors)
+        self.with_dyes.iter().find(is_wide).unwrap_or(self.main())
     }
 
     pub(crate) fn is_film(&self) -> bool {

@@ -371,11 +371,8 @@ impl<'p, 'c, 'n> Texel<'p, 'c, 'n> {
             }
         }
         let may_glow = !all(self.corners, |c| c.dose == 0.0);
-        if may_glow
-            && blended <= EXACT
-            && !is_good(&best)
-            && let Ok(fit) = self.polisher.fitter.fit(self.rgb)
-        {
+        if may_glow && blended <= EXACT && !is_good(&best) {
+            let fit = self.polisher.fitter.fit_among(self.rgb, &[]);
             let node = Node::new(fit.reflectance, fit.fluorescence, fit.de2000);
             best = best.or(Found { node, de2000: fit.de2000 });
         }

@@ -12,6 +12,9 @@ use crate::problem::{FilmProblem, Shape};
 /// How many of the table's starts are followed for a color by itself: the nearest ones, and of those
 /// that are near the ones with the least dose.
 const STARTS_ALONE: [usize; 2] = [8, 16];
+/// The same for one color whose dose matters more than the time: it ends within 1.08 times the least of
+/// the exhaustive search in 95 colors of 100.
+const STARTS_OF_ONE_COLOR: [usize; 2] = [16, 64];
 /// The same if the neighbors' materials lead to no match.
 const STARTS_BESIDE_A_MATCH: [usize; 2] = [3, 3];
 const STARTS_BESIDE_MISSES: [usize; 2] = [1, 0];
@@ -66,7 +69,14 @@ impl Job<'_> {
         self.exchanged(best.expect("there is at least one start"))
     }
 
-    /// The same from many starts of the table, to compare with.
+    /// The best of the fits from many starts of the table.
+    pub(crate) fn film_from_many_starts(&self) -> Fit {
+        let [near, light] = STARTS_OF_ONE_COLOR;
+        let best = self.best_film_of(None, self.table_starts(near, light).into_iter());
+        self.exchanged(best.expect("there is at least one start"))
+    }
+
+    /// [`Job::film`] from the nearest starts of every bucket of the table, to compare with.
     pub(crate) fn film_exhaustively(&self) -> Fit {
         let starts = self.starts().nearest_of_each(&self.goal, EXHAUSTIVE_STARTS);
         let mut found: Vec<Fit> = starts.into_iter().map(|start| self.film_from(start)).collect();
