@@ -86,22 +86,35 @@ const SPACES: [Space; 8] = [
     ("xyz",         [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]], EQUAL_ENERGY_WHITE),
 ];
 
+/// Other names of built-in spaces.
+const ALIASES: [(&str, &str); 6] = [
+    ("ap1", "acescg"),
+    ("ap0", "aces2065-1"),
+    ("rec709", "srgb"),
+    ("bt709", "srgb"),
+    ("bt2020", "rec2020"),
+    ("display-p3", "p3-d65"),
+];
+
 impl RgbSpace {
     /// The names of the built-in spaces.
     pub fn names() -> [&'static str; SPACES.len()] {
         SPACES.map(|(name, ..)| name)
     }
 
-    /// The built-in space of this name; case, `-`, `_`, `.` and spaces are ignored.
+    /// The built-in space of this name, or of an everyday name such as `rec709` or `ap1`; case, `-`, `_`,
+    /// `.` and spaces are ignored.
     ///
     /// # Errors
     ///
     /// [`RgbSpaceError::Unknown`] lists the known names.
     pub fn named(name: &str) -> Result<Self, RgbSpaceError> {
         let plain = |s: &str| s.to_ascii_lowercase().replace(['-', '_', '.', ' '], "");
+        let alias = ALIASES.iter().find(|(alias, _)| plain(alias) == plain(name));
+        let wanted = plain(alias.map_or(name, |(_, name)| name));
         SPACES
             .iter()
-            .find(|(known, ..)| plain(known) == plain(name))
+            .find(|(known, ..)| plain(known) == wanted)
             .map(|&(name, primaries, white)| Self { name: name.into(), primaries, white })
             .ok_or_else(|| RgbSpaceError::Unknown { found: name.into() })
     }
@@ -235,9 +248,12 @@ mod tests {
     fn names_are_found_in_any_spelling_and_unknown_ones_refused() {
         assert_eq!(RgbSpace::named("ACEScg").unwrap().name(), "acescg");
         assert_eq!(RgbSpace::named("Rec.2020").unwrap().name(), "rec2020");
-        assert!(
-            RgbSpace::named("rec709").unwrap_err().to_string().starts_with("unknown RGB space")
-        );
+        for (alias, name) in ALIASES {
+            assert_eq!(RgbSpace::named(alias).unwrap().name(), name);
+        }
+        assert_eq!(RgbSpace::named("BT.2020").unwrap().name(), "rec2020");
+        let unknown = RgbSpace::named("rec7091").unwrap_err().to_string();
+        assert!(unknown.starts_with("unknown RGB space"), "{unknown}");
     }
 
     #[test]

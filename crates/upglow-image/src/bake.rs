@@ -28,7 +28,8 @@ use crate::exr::writer::{ExrDescription, ExrWriter, WriteExrError};
 use crate::picture::Picture;
 use crate::picture::band::Band;
 use crate::picture::error::PictureError;
-use crate::picture::linear::{Assumed, LinearPicture};
+use crate::picture::linear::LinearPicture;
+use crate::picture::stated::{Declared, Interpretation};
 use crate::spectral::error::FormError;
 
 /// What a baked file stores for each texel.
@@ -63,8 +64,8 @@ impl Form {
 /// How pictures are read and baked files are written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BakeOptions {
-    /// Space and encoding of pictures that do not state them.
-    pub assumed: Assumed,
+    /// What is declared of the pictures.
+    pub declared: Declared,
     /// How to change texels outside the cube; `None` refuses them.
     pub repair: Option<Repair>,
     /// Half or float. The compact form of lobes is always float, because rounded positions on the ring
@@ -77,6 +78,8 @@ pub struct BakeOptions {
 pub struct Baked {
     /// Width and height of the picture.
     pub size: [usize; 2],
+    /// How the numbers of the picture were understood.
+    pub interpretation: Interpretation,
     /// Channels of the file.
     pub channels: usize,
     /// Texels that a repair changed.
@@ -197,7 +200,9 @@ impl<'c> Baker<'c> {
             _ => None,
         };
         let mut writer = ExrWriter::create(output, self.description(picture.picture()))?;
-        let mut baked = Baked { size, channels: 0, repaired: 0, kinds: None, bytes: 0 };
+        let interpretation = picture.interpretation().clone();
+        let mut baked =
+            Baked { size, interpretation, channels: 0, repaired: 0, kinds: None, bytes: 0 };
         picture.for_each_band(self.band_rows(size[0]), "baking", watch, |mut band| {
             match &repairer {
                 Some(repairer) => baked.repaired += repairer.repair(&mut band.rgb),
@@ -217,7 +222,7 @@ impl<'c> Baker<'c> {
 
     /// A picture that is converted to the cube's RGB space.
     fn open(&self, input: &Path) -> Result<LinearPicture, PictureError> {
-        let mut picture = LinearPicture::open(input, &self.options.assumed)?;
+        let mut picture = LinearPicture::open(input, &self.options.declared)?;
         picture.convert_to(self.cube.contract());
         Ok(picture)
     }

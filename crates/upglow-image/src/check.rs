@@ -24,7 +24,8 @@ use self::limits::Limits;
 use self::maps::Maps;
 use self::ranking::Candidate;
 use crate::picture::error::PictureError;
-use crate::picture::linear::{Assumed, LinearPicture};
+use crate::picture::linear::LinearPicture;
+use crate::picture::stated::{Declared, Interpretation};
 
 pub use self::cube_match::CubeMatch;
 pub use self::report::{CheckReport, Counts, Flaw, FlawedTexel, WorstTexel};
@@ -39,7 +40,7 @@ pub use self::report::{CheckReport, Counts, Flaw, FlawedTexel, WorstTexel};
 /// ```
 /// use upglow_color::{Contract, RgbSpace};
 /// use upglow_fit::Unwatched;
-/// use upglow_image::{Assumed, Checker, ExrDescription, ExrWriter};
+/// use upglow_image::{Checker, Declared, ExrDescription, ExrWriter};
 ///
 /// let folder = tempfile::tempdir()?;
 /// let path = folder.path().join("three.exr");
@@ -48,7 +49,7 @@ pub use self::report::{CheckReport, Counts, Flaw, FlawedTexel, WorstTexel};
 /// writer.write_band(&[&[0.5, 0.9, 0.0], &[0.4, 0.0, 1.0], &[0.3, 0.9, 0.0]])?;
 /// writer.finish()?;
 ///
-/// let mut checker = Checker::new(Contract::default(), Assumed::default());
+/// let mut checker = Checker::new(Contract::default(), Declared::default());
 /// let report = checker.check(&path, &Unwatched)?;
 /// assert_eq!(report.counts.reflectance, 1);
 /// assert_eq!(report.counts.needs_fluorescence, 1);
@@ -58,7 +59,7 @@ pub use self::report::{CheckReport, Counts, Flaw, FlawedTexel, WorstTexel};
 #[derive(Debug)]
 pub struct Checker<'c> {
     contract: Contract,
-    assumed: Assumed,
+    declared: Declared,
     /// A cube and the name of its file.
     cube: Option<(&'c Cube, String)>,
     /// The limits of each RGB space so far, for further pictures.
@@ -89,8 +90,8 @@ impl<'c> Checker<'c> {
 
     /// Checks each picture in its own RGB space, under the light, observer and adaptation of `contract`.
     #[must_use]
-    pub fn new(contract: Contract, assumed: Assumed) -> Self {
-        Self { contract, assumed, cube: None, known: Vec::new() }
+    pub fn new(contract: Contract, declared: Declared) -> Self {
+        Self { contract, declared, cube: None, known: Vec::new() }
     }
 
     /// Checks pictures in the RGB space of `cube`, and also how well its mixtures match each texel.
@@ -119,7 +120,7 @@ impl<'c> Checker<'c> {
         watch: &dyn Watch,
     ) -> Result<CheckReport, CheckError> {
         let input = input.as_ref();
-        let mut picture = LinearPicture::open(input, &self.assumed)?;
+        let mut picture = LinearPicture::open(input, &self.declared)?;
         let size = picture.picture().size();
         let limits = self.limits(&picture);
         let limits = &self.known[limits];
@@ -130,7 +131,8 @@ impl<'c> Checker<'c> {
             Ok::<_, CheckError>(())
         })?;
         let cube_file = self.cube.as_ref().map(|(_, file)| file.as_str());
-        Ok(pass.finish(input.display().to_string(), cube_file))
+        let interpretation = picture.interpretation().clone();
+        Ok(pass.finish(input.display().to_string(), interpretation, cube_file))
     }
 
     /// The index of the limits for a picture: in the cube's RGB space, or in the picture's own.
@@ -167,7 +169,12 @@ impl<'a> Pass<'a> {
         self.findings = std::mem::take(&mut self.findings).with(found);
     }
 
-    fn finish(self, file: String, cube_file: Option<&str>) -> CheckReport {
+    fn finish(
+        self,
+        file: String,
+        interpretation: Interpretation,
+        cube_file: Option<&str>,
+    ) -> CheckReport {
         let Self { limits, size: [width, height], maps, findings } = self;
         let display = Display::new(limits.table.colorimetry());
         CheckReport {
@@ -175,6 +182,7 @@ impl<'a> Pass<'a> {
             width,
             height,
             rgb_space: limits.contract.space.name().into(),
+            interpretation,
             illuminant: limits.contract.illuminant.name().into(),
             counts: findings.counts,
             flaws: findings.flaws(),
@@ -212,6 +220,7 @@ fn worst(table: &StandingTable, display: &Display, findings: &Findings) -> Vec<W
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::picture::stated::Word;
     use upglow_color::{Contract, LinearRgb, Standing, StandingKind};
 
     const WIDTH: usize = 61;
@@ -237,12 +246,17 @@ mod tests {
         Limits::new(Contract::default(), None)
     }
 
+    fn understood() -> Interpretation {
+        let word = |used: &str| Word { used: used.into(), by: "declared".into(), overruled: None };
+        Interpretation { space: word("acescg"), encoding: word("linear"), alpha: "none" }
+    }
+
     fn report(limits: &Limits<'_>, rgb: &[[f32; 3]], rows_at_once: usize) -> CheckReport {
         let mut pass = Pass::new(limits, [WIDTH, HEIGHT]);
         for (i, band) in rgb.chunks(rows_at_once * WIDTH).enumerate() {
             pass.add(i * rows_at_once, band);
         }
-        pass.finish("<script>alert('&\u{1}')</script>\".exr".into(), None)
+        pass.finish("<script>alert('&\u{1}')</script>\".exr".into(), understood(), None)
     }
 
     #[test]
@@ -320,7 +334,7 @@ mod tests {
         rgb[7505] = [0.0, 1.0, 0.0];
         rgb[2600] = [0.9, 0.0, 0.9];
         pass.add(0, &rgb);
-        let found = pass.finish("wide.exr".into(), None);
+        let found = pass.finish("wide.exr".into(), understood(), None);
         assert_eq!((found.heat.width, found.heat.height), (1000, 1));
         let color = |column: usize| found.heat.pixels[column];
         let [gray, broken, green, magenta] = [color(1), color(0), color(501), color(520)];
@@ -366,7 +380,7 @@ mod tests {
             (0..nodes).map(|i| cube.coordinates(i).map(|k| k as f32 / 2.0)).collect();
         let mut pass = Pass::new(&limits, [nodes, 1]);
         pass.add(0, &rgb);
-        let found = pass.finish("nodes.exr".into(), Some("cube")).cube.unwrap();
+        let found = pass.finish("nodes.exr".into(), understood(), Some("cube")).cube.unwrap();
         let stored = cube.nodes().iter().map(|node| f64::from(node.de2000));
         assert_eq!(found.texels, nodes as u64);
         // Single precision, where a small XYZ is magnified by ΔE00.
@@ -374,7 +388,7 @@ mod tests {
         assert!(miss < 0.01, "{found:?}");
         assert_eq!(found.kinds, CubeSummary::of(&cube).kinds);
         let other = Contract { adaptation: upglow_color::Adaptation::None, ..contract };
-        let refused = Checker::new(other, Assumed::default()).with_cube(&cube, "cube".into());
+        let refused = Checker::new(other, Declared::default()).with_cube(&cube, "cube".into());
         assert!(matches!(refused, Err(CheckError::Contract)));
     }
 }

@@ -2,12 +2,17 @@
 
 pub(crate) mod band;
 pub(crate) mod chromaticities;
+mod code_points;
 pub(crate) mod encoding;
 pub(crate) mod error;
 mod exr;
+mod icc;
+pub(crate) mod interop;
 pub(crate) mod linear;
+mod orientation;
 mod png;
 mod source;
+pub(crate) mod stated;
 #[cfg(test)]
 mod tests;
 mod tiff;
@@ -22,26 +27,31 @@ use self::band::Band;
 use self::encoding::Encoding;
 use self::error::PictureError;
 use self::exr::ExrPicture;
+use self::orientation::Turned;
 use self::png::PngPicture;
 use self::source::{Alpha, Facts, Source};
+use self::stated::{Chosen, Declared, Stated};
 use self::tiff::TiffPicture;
 use crate::exr::header::Window;
 
 /// Reads a picture from top to bottom.
 ///
 /// Supported are OpenEXR (rows or tiles, every compression but HTJ2K, no deep data; R, G, B or Y, with or
-/// without A, also in the only layer or part), TIFF (8 and 16 bit integers, 16 and 32 bit floats; gray or
-/// RGB, with or without alpha; strips or tiles) and PNG (all types).
+/// without A, also in a layer or part), TIFF (integers of 1 to 32 bits, floats of 16, 32 and 64 bits; gray
+/// or RGB, with or without alpha and further samples; strips or tiles, interleaved or in planes; LZW,
+/// deflate, PackBits or not compressed) and PNG (all types). Pictures that their files say are turned or
+/// mirrored are read upright.
 ///
 /// # Memory
 ///
 /// A band takes 12 bytes per pixel, 16 with alpha, and as much again while it is decompressed: 32 MiB for
 /// 64 rows of 16,384 columns. Files in tiles or blocks of rows take one more row of those. Interlaced PNG
-/// and TIFF in a single strip are decompressed whole, and refused above 1 GiB.
+/// and pictures that are not stored upright are decompressed whole, and refused above 1 GiB.
 #[derive(Debug)]
 pub struct Picture {
     source: Box<dyn Source>,
     facts: Facts,
+    alpha: Option<Alpha>,
     next_row: usize,
 }
 
@@ -52,16 +62,32 @@ impl Picture {
     ///
     /// [`PictureError`] if the file cannot be read or is not a supported picture.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, PictureError> {
-        let path = path.as_ref();
+        Self::open_as(path.as_ref(), &Declared::default())
+    }
+
+    /// Opens a picture with the declared layer and use of alpha.
+    pub(crate) fn open_as(path: &Path, declared: &Declared) -> Result<Self, PictureError> {
         let mut found = Vec::new();
         File::open(path)?.take(4).read_to_end(&mut found)?;
-        let (source, facts): (Box<dyn Source>, Facts) = match found[..] {
-            [0x76, 0x2f, 0x31, 0x01] => ExrPicture::open(path)?,
+        let layer = declared.layer.as_deref();
+        let is_exr = found == [0x76, 0x2f, 0x31, 0x01];
+        let (source, mut facts): (Box<dyn Source>, Facts) = match found[..] {
+            _ if is_exr => ExrPicture::open(path, layer)?,
             [b'I', b'I', 42 | 43, 0] | [b'M', b'M', 0, 42 | 43] => TiffPicture::open(path)?,
             [0x89, b'P', b'N', b'G'] => PngPicture::open(path)?,
             _ => return Err(PictureError::Format { found }),
         };
-        Ok(Self { source, facts, next_row: 0 })
+        if layer.is_some() && !is_exr {
+            return Err(PictureError::NoLayers);
+        }
+        let alpha = stated::alpha(facts.last_sample, declared.alpha)?;
+        let source = Turned::of(source, &mut facts)?;
+        Ok(Self { source, facts, alpha, next_row: 0 })
+    }
+
+    /// The space and encoding to use: the declared ones, or those that the file states.
+    pub(crate) fn chosen(&self, declared: &Declared) -> Result<Chosen, PictureError> {
+        stated::choose(&self.facts.color, declared, self.alpha)
     }
 
     /// Width and height in pixels, 1 or more; those of the data window of an OpenEXR file.
@@ -71,27 +97,35 @@ impl Picture {
 
     /// The RGB space that the file states, if any.
     ///
-    /// OpenEXR: `chromaticities`, or ACES2065-1 if `acesImageContainerFlag` is 1. PNG: cICP, sRGB or
-    /// cHRM. TIFF: the primaries and the white. `None` for files with an ICC profile, which is not read.
+    /// OpenEXR: ACES2065-1 if `acesImageContainerFlag` is 1, else `colorInteropID`, else
+    /// `chromaticities`. PNG: cICP, else the ICC profile, else sRGB, else cHRM. TIFF: the ICC profile,
+    /// else the primaries and the white.
     pub fn space(&self) -> Option<&RgbSpace> {
-        self.facts.space.as_ref()
+        match &self.facts.color.space {
+            Stated::Yes { value, .. } => Some(value),
+            _ => None,
+        }
     }
 
     /// The encoding of stored numbers, if the file or its format states it.
     ///
-    /// OpenEXR and TIFF of floats are linear; PNG has cICP, sRGB or gAMA; TIFF of integers states none.
+    /// OpenEXR and TIFF of floats are linear unless they state another one; PNG has cICP, an ICC profile,
+    /// sRGB or gAMA; TIFF of integers an ICC profile.
     pub fn encoding(&self) -> Option<Encoding> {
-        self.facts.encoding
+        match self.facts.color.encoding {
+            Stated::Yes { value, .. } => Some(value),
+            _ => None,
+        }
     }
 
     /// Whether bands have alpha.
     pub fn has_alpha(&self) -> bool {
-        self.facts.alpha.is_some()
+        self.alpha.is_some()
     }
 
     /// How colors and alpha are combined; `None` without alpha. Bands have the colors as stored.
     pub(crate) fn alpha(&self) -> Option<Alpha> {
-        self.facts.alpha
+        self.alpha
     }
 
     /// Data and display window of an OpenEXR file.
@@ -114,7 +148,8 @@ impl Picture {
         let rows = self.next_row..height.min(self.next_row.saturating_add(whole));
         let first_row = self.next_row;
         self.next_row = rows.end;
-        let (rgb, alpha) = self.source.read(rows)?;
+        let (rgb, last_sample) = self.source.read(rows)?;
+        let alpha = last_sample.filter(|_| self.has_alpha());
         Ok(Some(Band { first_row, width, rgb, alpha }))
     }
 

@@ -18,7 +18,7 @@ use upglow_fit::{
     BlendKinds, CubeSummary, KindCounts, MaterialKind, Polisher, Preset, Unwatched, build_cube,
 };
 use upglow_image::{
-    Assumed, BakeError, BakeOptions, Baked, Baker, Encoding, ExamplePicture, ExrDescription,
+    BakeError, BakeOptions, Baked, Baker, Declared, Encoding, ExamplePicture, ExrDescription,
     ExrReader, ExrWriter, Form, Lint, MaterialPicture, Repair, Sample, SpectralPicture,
     SpectralTexel,
 };
@@ -141,7 +141,7 @@ impl Desk {
 }
 
 fn options(sample: Sample) -> BakeOptions {
-    BakeOptions { assumed: Assumed::default(), repair: None, sample }
+    BakeOptions { declared: Declared::default(), repair: None, sample }
 }
 
 fn bake(
@@ -591,7 +591,7 @@ fn an_srgb_png_gets_its_own_colors_from_an_acescg_cube() {
     let srgb = srgb.on(Grid::FIT);
     let mut exact = 0;
     for (code, found) in codes.iter().zip(colors(&output)) {
-        let linear = code.map(|v| Encoding::Srgb.to_linear(f64::from(v) / 255.0));
+        let linear = Encoding::Srgb.to_linear(code.map(|v| f64::from(v) / 255.0));
         let expected = srgb.xyz_from_rgb(LinearRgb(linear));
         if is_exact(single(colorimetry().rgb_from_xyz(expected).0)) {
             exact += 1;
@@ -603,8 +603,12 @@ fn an_srgb_png_gets_its_own_colors_from_an_acescg_cube() {
     // The same with the space and encoding given by the caller.
     let said = std::fs::read(&output).unwrap();
     png(&input, png::ColorType::Rgb, 10, codes.as_flattened(), false);
-    let assumed = Assumed { space: RgbSpace::named("srgb").ok(), encoding: Some(Encoding::Srgb) };
-    let told = BakeOptions { assumed, ..options(Sample::Float) };
+    let declared = Declared {
+        space: RgbSpace::named("srgb").ok(),
+        encoding: Some(Encoding::Srgb),
+        ..Declared::default()
+    };
+    let told = BakeOptions { declared, ..options(Sample::Float) };
     bake(cube(), radiance("D65"), told, &input, &output).unwrap();
     assert_eq!(std::fs::read(&output).unwrap(), said);
     let refused = bake(cube(), POLISHED, options(Sample::Half), &input, &output).unwrap_err();

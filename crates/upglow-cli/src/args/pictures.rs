@@ -3,27 +3,43 @@
 use std::path::PathBuf;
 
 use upglow_color::{Adaptation, Grid, RgbSpace, choices};
-use upglow_image::{Assumed, Encoding, Repair, Sample};
+use upglow_image::{Declared, DeclaredAlpha, Encoding, Repair, Sample};
 use upglow_terminal::{Threads, word};
 
-use super::values::{bands, lights, position, rgb_space};
+use super::values::{PictureSpace, bands, lights, picture_space, position};
 
-/// How to interpret a picture whose file does not say it.
+/// How to interpret pictures.
 #[derive(Clone, Debug, clap::Args)]
 #[command(next_help_heading = "Pictures")]
 pub(crate) struct PictureArgs {
-    /// RGB space of pictures that do not state theirs: acescg, aces2065-1, rec2020, p3-d65, srgb,
-    /// prophoto, adobe-rgb, xyz, or eight chromaticities Rx,Ry,Gx,Gy,Bx,By,Wx,Wy
-    #[arg(long, value_parser = rgb_space)]
-    space: Option<RgbSpace>,
-    /// Transfer curve of pictures that do not state theirs: linear, srgb, or a gamma such as 2.2
+    /// RGB space of the pictures, whatever their files state: acescg, aces2065-1, rec2020, p3-d65, srgb,
+    /// prophoto, adobe-rgb, xyz, an ID of the Color Interop Forum such as srgb_p3d65_scene, which
+    /// states the encoding too, or eight chromaticities Rx,Ry,Gx,Gy,Bx,By,Wx,Wy
+    /// [default: what each file states]
+    #[arg(long, value_parser = picture_space)]
+    space: Option<PictureSpace>,
+    /// Transfer curve of the pictures, whatever their files state: linear, srgb, bt709, or a gamma such
+    /// as 2.2 [default: what each file states]
     #[arg(long, value_name = "NAME|GAMMA")]
     encoding: Option<Encoding>,
+    /// Whether the colors of the pictures are multiplied by their alpha: straight, associated, or none
+    /// if alpha has no meaning [default: what each file states]
+    #[arg(long, value_name = "NAME", value_parser = word::<DeclaredAlpha>())]
+    alpha: Option<DeclaredAlpha>,
+    /// Layer of OpenEXR files with several: the text before .R in its channels, or the name of its part
+    #[arg(long, value_name = "NAME")]
+    layer: Option<String>,
 }
 
 impl PictureArgs {
-    pub(crate) fn assumed(&self) -> Assumed {
-        Assumed { space: self.space.clone(), encoding: self.encoding }
+    pub(crate) fn declared(&self) -> Declared {
+        let space = self.space.as_ref();
+        Declared {
+            space: space.map(|named| named.space.clone()),
+            encoding: self.encoding.or(space.and_then(|named| named.encoding)),
+            alpha: self.alpha,
+            layer: self.layer.clone(),
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Parsers of option values that are neither a word nor a number.
 
-use upglow_color::{Grid, Illuminant, RgbSpace, RgbSpaceError};
+use upglow_color::{Grid, Illuminant, RgbSpace};
+use upglow_image::{Encoding, InteropSpace};
 use upglow_terminal::parsed;
 
 /// The greatest slope of a reflectance, 1/nm, or `None` for no limit. A type of its own, because clap
@@ -21,14 +22,39 @@ pub(super) fn position(text: &str) -> Result<[usize; 2], String> {
     Ok([parsed(x, expected)?, parsed(y, expected)?])
 }
 
-/// The name of a space, or eight chromaticities.
-pub(super) fn rgb_space(text: &str) -> Result<RgbSpace, RgbSpaceError> {
+/// The RGB space of pictures, and their encoding if its name states one.
+#[derive(Clone, Debug)]
+pub(crate) struct PictureSpace {
+    pub(crate) space: RgbSpace,
+    pub(crate) encoding: Option<Encoding>,
+}
+
+/// The name of a space, eight chromaticities, or an ID of the Color Interop Forum.
+pub(super) fn picture_space(text: &str) -> Result<PictureSpace, String> {
+    let expected = "expected an RGB space";
+    match InteropSpace::of_id(text) {
+        Some(InteropSpace::Color(space, encoding)) => {
+            return Ok(PictureSpace { space, encoding: Some(encoding) });
+        }
+        Some(InteropSpace::Data) => return Err(format!("data, which is no color, {expected}")),
+        Some(_) => return Err(format!("{text}, {expected}; leave --space out to use the file's")),
+        None => {}
+    }
     let numbers: Option<Vec<f64>> = text.split(',').map(|cell| cell.trim().parse().ok()).collect();
-    match numbers.as_deref() {
+    let space = match numbers.as_deref() {
         Some(&[rx, ry, gx, gy, bx, by, wx, wy]) => {
             RgbSpace::custom("custom", [[rx, ry], [gx, gy], [bx, by]], [wx, wy])
         }
         _ => RgbSpace::named(text),
+    };
+    space.map(|space| PictureSpace { space, encoding: None }).map_err(|error| error.to_string())
+}
+
+/// An RGB space of linear colors, like [`picture_space`].
+pub(super) fn rgb_space(text: &str) -> Result<RgbSpace, String> {
+    match picture_space(text)? {
+        PictureSpace { space, encoding: None | Some(Encoding::Linear) } => Ok(space),
+        _ => Err(format!("{text}, expected an RGB space of linear colors such as lin_ap1_scene")),
     }
 }
 
@@ -66,7 +92,17 @@ mod tests {
     fn eight_chromaticities_are_a_space() {
         let custom = rgb_space("0.64,0.33,0.30,0.60,0.15,0.06,0.3127,0.3290");
         assert!(custom.is_ok_and(|space| space.name() == "custom"));
-        assert!(rgb_space("rec709").is_err());
+        assert!(rgb_space("rec7091").is_err());
         assert!(rgb_space("0.64,0.33").is_err());
+    }
+
+    #[test]
+    fn interop_ids_state_the_encoding_too() {
+        let id = picture_space("g22_rec709_scene").unwrap();
+        assert_eq!((id.space.name(), id.encoding), ("srgb", Some(Encoding::Gamma(2.2))));
+        assert!(rgb_space("lin_rec2020_scene").is_ok_and(|space| space.name() == "rec2020"));
+        for text in ["srgb_ap1_scene", "lin_ciexyzd65_scene", "data", "unknown"] {
+            assert!(rgb_space(text).is_err_and(|e| e.starts_with(text) && e.contains("expected")));
+        }
     }
 }

@@ -32,7 +32,7 @@ struct BakeReport {
 pub(crate) fn run(args: &BakeArgs, console: &Console) -> Result<(), Failure> {
     let form = form(args)?;
     let options = BakeOptions {
-        assumed: args.picture.assumed(),
+        declared: args.picture.declared(),
         repair: args.repair,
         sample: args.result.sample.into(),
     };

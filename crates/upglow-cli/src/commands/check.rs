@@ -27,7 +27,7 @@ pub(crate) fn run(args: &CheckArgs, console: &Console) -> Result<(), Failure> {
     check_outputs(args, &inputs)?;
     let cube = args.cube.as_deref().map(files::read_cube).transpose()?;
     let contract = contract(args, cube.as_ref())?;
-    let mut checker = Checker::new(contract, args.picture.assumed());
+    let mut checker = Checker::new(contract, args.picture.declared());
     if let (Some(cube), Some(path)) = (&cube, &args.cube) {
         let checked = checker.with_cube(cube, path.display().to_string());
         checker = checked.map_err(|error| Failure::option("--cube", error))?;

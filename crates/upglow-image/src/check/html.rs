@@ -58,9 +58,10 @@ fn article(index: usize, report: &CheckReport) -> String {
     let CheckReport { width, height, .. } = report;
     format!(
         "<article id=\"picture-{index}\">\n<header>\n<h2>{}</h2>\n\
-         <p class=\"facts\">{width} × {height} texels · {} · seen under {}</p>\n</header>\n\
+         <p class=\"facts\">{width} × {height} texels · read as {} · checked in {} under {}</p>\n</header>\n\
          <p class=\"verdict\">{}</p>\n<p class=\"next\">{}</p>\n{}{}{}{}{}{}</article>\n",
         escaped(&report.file),
+        escaped(&report.interpretation.to_string()),
         escaped(&report.rgb_space),
         escaped(&report.illuminant),
         headline(report),

@@ -6,6 +6,7 @@ use upglow_color::{Standing, StandingKind};
 
 use super::cube_match::CubeMatch;
 use super::raster::Raster;
+use crate::picture::stated::Interpretation;
 
 /// Which materials a picture needs.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,6 +20,8 @@ pub struct CheckReport {
     pub height: usize,
     /// The RGB space that the picture was checked in: its own, or the cube's.
     pub rgb_space: String,
+    /// How the numbers of the picture were understood.
+    pub interpretation: Interpretation,
     /// The light under which materials must match it.
     pub illuminant: String,
     /// Numbers of texels of each kind.

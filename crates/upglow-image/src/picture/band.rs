@@ -34,8 +34,8 @@ impl Band {
             return;
         }
         self.rgb.par_chunks_mut(DECODED_TOGETHER).for_each(|pixels| {
-            for v in pixels.as_flattened_mut() {
-                *v = to_single(encoding.to_linear(f64::from(*v)));
+            for rgb in pixels {
+                *rgb = encoding.to_linear(rgb.map(f64::from)).map(to_single);
             }
         });
     }

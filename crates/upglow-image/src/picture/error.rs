@@ -2,6 +2,7 @@
 
 use std::io;
 
+use super::stated::{Found, Missing};
 use crate::exr::error::ExrError;
 use crate::exr::header::MAX_SIDE;
 
@@ -24,17 +25,39 @@ pub enum PictureError {
     /// A PNG file that cannot be read.
     #[error("damaged, expected a whole PNG picture")]
     Png(#[from] ::png::DecodingError),
-    /// A TIFF file that cannot be read.
-    #[error("damaged, expected a whole TIFF picture")]
-    Tiff(#[from] ::tiff::TiffError),
-    /// Pixels of an unsupported type, or no unambiguous set of color channels.
+    /// A file that contradicts its format.
+    #[error("damaged: {found}, expected a whole {format} picture")]
+    Damaged {
+        /// The contradiction.
+        found: String,
+        /// The name of the format.
+        format: &'static str,
+    },
+    /// Pixels of an unsupported type.
     #[error("{found}, expected {expected}")]
     Pixels {
-        /// The type, or the channels or layers of the file.
+        /// The type.
         found: String,
         /// What is supported.
         expected: &'static str,
     },
+    /// No channels of color, or not the wanted ones.
+    #[error("channels {found}, expected {expected}")]
+    Channels {
+        /// The channels or layers of the file.
+        found: String,
+        /// What is supported.
+        expected: String,
+    },
+    /// Several layers of color, of which none was chosen.
+    #[error("color layers {found}, expected the name of one to be given")]
+    Layers {
+        /// The layers.
+        found: String,
+    },
+    /// A layer was chosen in a file that has none.
+    #[error("a file without layers, expected no layer to be given")]
+    NoLayers,
     /// An empty picture, or one larger than supported.
     #[error("{} by {} pixels, expected 1 to {MAX_SIDE} a side", .found[0], .found[1])]
     Size {
@@ -51,10 +74,35 @@ pub enum PictureError {
         /// The limit.
         expected: u64,
     },
-    /// Neither the file nor the caller names an RGB space.
-    #[error("the file does not name its RGB space, expected one to be given")]
-    Space,
-    /// Neither the file nor the caller names an encoding.
-    #[error("the file does not name its encoding, expected linear, srgb or a gamma to be given")]
-    Encoding,
+    /// Neither the file nor the caller states an RGB space or an encoding.
+    #[error("{found} {missing}, expected it to be given")]
+    Unstated {
+        /// What is missing.
+        missing: Missing,
+        /// What the file states instead.
+        found: Found,
+    },
+    /// A curve of displays of high dynamic range.
+    #[error(
+        "{by} states {curve}, a curve of displays of high dynamic range, expected linear light or the \
+         curve of sRGB, BT.709 or a gamma: convert the picture to linear light"
+    )]
+    HighDynamicRange {
+        /// The part of the file that states it.
+        by: &'static str,
+        /// The name of the curve.
+        curve: &'static str,
+    },
+    /// A sample beside the colors whose use the file does not state.
+    #[error(
+        "a sample beside the colors whose use the file does not state, expected it to be declared \
+         straight or associated alpha, or none"
+    )]
+    Alpha,
+}
+
+impl PictureError {
+    pub(super) fn pixels(found: impl Into<String>, expected: &'static str) -> Self {
+        Self::Pixels { found: found.into(), expected }
+    }
 }

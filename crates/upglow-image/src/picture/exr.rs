@@ -8,9 +8,11 @@ use upglow_color::RgbSpace;
 use super::chromaticities;
 use super::encoding::Encoding;
 use super::error::PictureError;
-use super::source::{Alpha, Facts, Pixels, Source};
-use crate::exr::error::listed;
-use crate::exr::header::{Channel, Header};
+use super::interop::InteropSpace;
+use super::source::{Alpha, Facts, LastSample, Pixels, Source};
+use super::stated::{Stated, StatedColor};
+use crate::exr::error::{listed, shown};
+use crate::exr::header::{Channel, Header, Sample};
 use crate::exr::reader::ExrReader;
 
 #[derive(Debug)]
@@ -22,10 +24,13 @@ pub(super) struct ExrPicture {
 }
 
 impl ExrPicture {
-    pub(super) fn open(path: &Path) -> Result<(Box<dyn Source>, Facts), PictureError> {
+    pub(super) fn open(
+        path: &Path,
+        layer: Option<&str>,
+    ) -> Result<(Box<dyn Source>, Facts), PictureError> {
         let mut prefix = String::new();
         let reader = ExrReader::open_with(path, |parts| {
-            let chosen = choose(parts)?;
+            let chosen = choose(parts, layer)?;
             prefix = chosen.prefix;
             Ok::<_, PictureError>(chosen.part)
         })?;
@@ -37,11 +42,14 @@ impl ExrPicture {
         let alpha = index("A").ok();
         let facts = Facts {
             size: reader.size(),
-            space: space(&reader),
-            encoding: Some(Encoding::Linear),
-            alpha: alpha.map(|_| Alpha::Associated),
+            color: stated_color(&reader),
+            last_sample: match alpha {
+                Some(_) => LastSample::Alpha(Alpha::Associated),
+                None => LastSample::Absent,
+            },
             windows: Some(reader.windows()),
             block_rows: reader.block_rows(),
+            orientation: 1,
         };
         Ok((Box::new(Self { reader, colors, alpha }), facts))
     }
@@ -71,36 +79,76 @@ impl Layer {
         let layer = self.prefix.strip_suffix('.');
         layer.or(self.part_name.as_deref()).unwrap_or("R, G, B")
     }
+
+    /// The name of the part and that of the layer in it.
+    fn full(&self) -> Option<String> {
+        Some(format!("{}.{}", self.part_name.as_deref()?, self.prefix.strip_suffix('.')?))
+    }
+
+    fn is_named(&self, name: &str) -> bool {
+        self.label() == name
+            || self.part_name.as_deref() == Some(name)
+            || self.full().as_deref() == Some(name)
+    }
 }
 
-/// The layer of the only plain R, G, B or Y, or the only layer of the file.
-fn choose(parts: &[Header]) -> Result<Layer, PictureError> {
+/// The chosen layer; by default that of the only plain R, G, B or Y, or the only one of the file.
+fn choose(parts: &[Header], name: Option<&str>) -> Result<Layer, PictureError> {
     let all: Vec<Layer> = parts.iter().enumerate().flat_map(|(i, part)| layers(i, part)).collect();
-    let only = |wanted: fn(&Layer) -> bool| {
+    let only = |wanted: &dyn Fn(&Layer) -> bool| {
         let mut fitting = all.iter().filter(|layer| wanted(layer));
         fitting.next().filter(|_| fitting.next().is_none()).cloned()
     };
-    let chosen = only(|layer| layer.prefix.is_empty()).or_else(|| only(|_| true));
-    chosen.ok_or_else(|| not_chosen(parts, &all))
+    if let Some(name) = name {
+        let chosen = only(&|layer| layer.full().as_deref() == Some(name));
+        let chosen = chosen.or_else(|| only(&|layer| layer.is_named(name)));
+        let expected = || match &all[..] {
+            [] => EXPECTED.into(),
+            _ => format!("one of the layers {}", labels(&all)),
+        };
+        return chosen.ok_or_else(|| PictureError::Channels {
+            found: format!("without one color layer {:?}", shown(name)),
+            expected: expected(),
+        });
+    }
+    let chosen = only(&|layer| layer.prefix.is_empty()).or_else(|| only(&|_| true));
+    chosen.ok_or_else(|| match &all[..] {
+        [] => {
+            let channels = parts.iter().flat_map(|part| &part.channels);
+            let names = listed(channels.map(|c| c.name.as_str()));
+            let is_luma = parts.iter().any(|p| p.channels.iter().any(|c| is_chroma(&c.name)));
+            let kind = if is_luma { ": luminance and chroma" } else { "" };
+            PictureError::Channels { found: names + kind, expected: EXPECTED.into() }
+        }
+        _ => PictureError::Layers { found: labels(&all) },
+    })
 }
 
-fn not_chosen(parts: &[Header], all: &[Layer]) -> PictureError {
-    let channels = parts.iter().flat_map(|part| &part.channels).map(|c| c.name.as_str());
-    let (found, expected) = match all {
-        [] => (listed(channels), "R, G, B or Y"),
-        _ => (listed(all.iter().map(Layer::label)), "one set of R, G, B"),
+const EXPECTED: &str = "R, G and B, or Y alone: save the picture with these";
+
+/// The layers' names, which are those of part and layer where that of the layer alone is ambiguous.
+fn labels(all: &[Layer]) -> String {
+    let name = |layer: &Layer| {
+        let is_ambiguous = all.iter().filter(|other| other.is_named(layer.label())).count() > 1;
+        let full = layer.full().filter(|_| is_ambiguous);
+        full.unwrap_or_else(|| layer.label().to_owned())
     };
-    PictureError::Pixels { found: format!("channels {found}"), expected }
+    let names: Vec<String> = all.iter().map(name).collect();
+    listed(names.iter().map(String::as_str))
 }
 
 fn layers(part: usize, header: &Header) -> Vec<Layer> {
-    let names: Vec<&str> = header.channels.iter().map(|c: &Channel| c.name.as_str()).collect();
+    let is_number = |c: &&Channel| c.sample != Sample::Uint;
+    let channels = header.channels.iter().filter(is_number);
+    let names: Vec<&str> = channels.map(|c| c.name.as_str()).collect();
     let has = |prefix: &str, name: &str| names.iter().any(|n| n.strip_prefix(prefix) == Some(name));
     let with = |prefix: &str| Layer { part, part_name: header.name.clone(), prefix: prefix.into() };
     let colored = names.iter().filter_map(|n| n.strip_suffix('R'));
     let colored = colored.filter(|p| is_prefix(p) && has(p, "G") && has(p, "B"));
     let mut found: Vec<Layer> = colored.map(with).collect();
-    let gray = names.iter().filter_map(|n| n.strip_suffix('Y')).filter(|p| is_prefix(p));
+    // Beside X, Z or chroma, Y is a coordinate or a luminance.
+    let is_gray = |p: &&str| is_prefix(p) && !["X", "Z", "RY", "BY"].iter().any(|n| has(p, n));
+    let gray = names.iter().filter_map(|n| n.strip_suffix('Y')).filter(is_gray);
     let gray: Vec<Layer> = gray.map(with).filter(|layer| !found.contains(layer)).collect();
     found.extend(gray);
     found
@@ -110,13 +158,36 @@ fn is_prefix(text: &str) -> bool {
     text.is_empty() || text.ends_with('.')
 }
 
-fn space(reader: &ExrReader) -> Option<RgbSpace> {
+fn is_chroma(name: &str) -> bool {
+    ["RY", "BY"].contains(&name.rsplit('.').next().unwrap_or_default())
+}
+
+/// What a file states, in the order of the Color Interop Forum.
+fn stated_color(reader: &ExrReader) -> StatedColor {
     let attributes = reader.attributes();
-    let stated = attributes.get("chromaticities");
-    if let Some(found) = stated.and_then(|value| value.as_singles("chromaticities")) {
-        let [rx, ry, gx, gy, bx, by, wx, wy] = found.map(f64::from);
-        return chromaticities::space([[rx, ry], [gx, gy], [bx, by]], [wx, wy]);
+    let is_aces = attributes
+        .get("acesImageContainerFlag")
+        .is_some_and(|flag| flag.of_kind("int") == Some(&[1, 0, 0, 0]));
+    if is_aces {
+        let space = RgbSpace::named("aces2065-1").expect("it is built in");
+        return StatedColor::yes(space, Encoding::Linear, "acesImageContainerFlag");
     }
-    let is_aces = attributes.get("acesImageContainerFlag")?.of_kind("int") == Some(&[1, 0, 0, 0]);
-    RgbSpace::named("aces2065-1").ok().filter(|_| is_aces)
+    if let Some(id) = attributes.get("colorInteropID").and_then(|id| id.as_text()) {
+        return match InteropSpace::of_id(id) {
+            Some(InteropSpace::Color(space, encoding)) => {
+                StatedColor::yes(space, encoding, "colorInteropID")
+            }
+            _ => StatedColor::unread(format!("colorInteropID {:?}", shown(id))),
+        };
+    }
+    let stated = attributes.get("chromaticities");
+    let stated = stated.and_then(|value| value.as_singles("chromaticities"));
+    let space = stated.and_then(|found| {
+        let [rx, ry, gx, gy, bx, by, wx, wy] = found.map(f64::from);
+        chromaticities::space([[rx, ry], [gx, gy], [bx, by]], [wx, wy])
+    });
+    StatedColor {
+        space: space.map_or(Stated::No, |space| Stated::yes(space, "chromaticities")),
+        encoding: Stated::yes(Encoding::Linear, "OpenEXR"),
+    }
 }

@@ -9,25 +9,15 @@ use upglow_fit::{Progress, Stopped, Watch};
 
 use super::Picture;
 use super::band::Band;
-use super::encoding::Encoding;
 use super::error::PictureError;
 use super::source::Alpha;
-
-/// Space and encoding of pictures that do not state them.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Assumed {
-    /// The RGB space.
-    pub space: Option<RgbSpace>,
-    /// The encoding.
-    pub encoding: Option<Encoding>,
-}
+use super::stated::{Chosen, Declared, Interpretation};
 
 /// Reads the linear light of a picture from top to bottom.
 #[derive(Debug)]
 pub(crate) struct LinearPicture {
     picture: Picture,
-    space: RgbSpace,
-    encoding: Encoding,
+    chosen: Chosen,
     /// From the picture's own RGB space to the one that [`LinearPicture::convert_to`] set, if different.
     conversion: Option<Matrix3>,
 }
@@ -37,21 +27,15 @@ pub(crate) struct LinearPicture {
 const ROUNDING: f32 = 4e-6;
 
 impl LinearPicture {
-    /// Opens a picture. The file's own space and encoding have priority over the assumed ones.
+    /// Opens a picture. What is declared has priority over what the file states.
     ///
     /// # Errors
     ///
     /// [`PictureError`] if it cannot be read, or its space or encoding is unknown.
-    pub(crate) fn open(path: &Path, assumed: &Assumed) -> Result<Self, PictureError> {
-        let picture = Picture::open(path)?;
-        let space = picture.space().or(assumed.space.as_ref()).cloned();
-        let encoding = picture.encoding().or(assumed.encoding);
-        Ok(Self {
-            picture,
-            space: space.ok_or(PictureError::Space)?,
-            encoding: encoding.ok_or(PictureError::Encoding)?,
-            conversion: None,
-        })
+    pub(crate) fn open(path: &Path, declared: &Declared) -> Result<Self, PictureError> {
+        let picture = Picture::open_as(path, declared)?;
+        let chosen = picture.chosen(declared)?;
+        Ok(Self { picture, chosen, conversion: None })
     }
 
     /// The picture.
@@ -59,16 +43,22 @@ impl LinearPicture {
         &self.picture
     }
 
-    /// The RGB space of the file, stated or assumed.
+    /// The RGB space of the file, stated or declared.
     pub(crate) fn space(&self) -> &RgbSpace {
-        &self.space
+        &self.chosen.space
+    }
+
+    /// How the numbers of the file are understood.
+    pub(crate) fn interpretation(&self) -> &Interpretation {
+        &self.chosen.interpretation
     }
 
     /// Converts the following rows to the RGB space of a contract, under the contract's light and
     /// adaptation. Values that are outside 0..=1 only by rounding become 0 or 1.
     pub(crate) fn convert_to(&mut self, contract: &Contract) {
-        self.conversion = (self.space != contract.space).then(|| {
-            let from = Contract { space: self.space.clone(), ..contract.clone() }.on(Grid::FIT);
+        let space = &self.chosen.space;
+        self.conversion = (*space != contract.space).then(|| {
+            let from = Contract { space: space.clone(), ..contract.clone() }.on(Grid::FIT);
             contract.on(Grid::FIT).rgb_from_xyz_matrix() * from.xyz_from_rgb_matrix()
         });
     }
@@ -95,19 +85,23 @@ impl LinearPicture {
     }
 
     /// The next rows, like [`Picture::read_band`], as linear light in the picture's own space or that of
-    /// [`LinearPicture::convert_to`]. Colors are not multiplied by alpha.
+    /// [`LinearPicture::convert_to`]. Colors are not multiplied by alpha; where alpha is 0, they are
+    /// those that the file has.
     ///
     /// # Errors
     ///
     /// [`PictureError`] if the file is damaged there.
     fn read_band(&mut self, rows: usize) -> Result<Option<Band>, PictureError> {
         let Some(mut band) = self.picture.read_band(rows)? else { return Ok(None) };
-        band.decode(self.encoding);
+        // Encoded colors are multiplied by alpha as they are stored, so they are divided first.
         if let (Some(Alpha::Associated), Some(alpha)) = (self.picture.alpha(), &band.alpha) {
             band.rgb.par_iter_mut().zip(alpha).for_each(|(rgb, a)| {
-                *rgb = if *a == 0.0 { [0.0; 3] } else { rgb.map(|v| v / a) };
+                if *a != 0.0 {
+                    *rgb = rgb.map(|v| v / a);
+                }
             });
         }
+        band.decode(self.chosen.encoding);
         if let Some(conversion) = self.conversion {
             band.rgb.par_iter_mut().for_each(|rgb| {
                 *rgb = (conversion * rgb.map(f64::from)).map(|v| snapped(to_single(v)));

@@ -2,19 +2,20 @@
 
 use std::fmt;
 use std::fs::File;
-use std::io::BufReader;
+use std::io::{BufReader, Cursor};
 use std::ops::Range;
 use std::path::Path;
 
-use png::{
-    BitDepth, CodingIndependentCodePoints, ColorType, Decoder, Info, Reader, Transformations,
-};
+use png::{BitDepth, ColorType, DecodeOptions, Decoder, Info, Reader, Transformations};
 use upglow_color::RgbSpace;
 
 use super::chromaticities::space;
 use super::encoding::Encoding;
 use super::error::PictureError;
-use super::source::{Alpha, Facts, Pixels, Source, check_memory, check_size, pixels};
+use super::source::{Alpha, Facts, LastSample, Pixels, Source, check_memory, check_size, pixels};
+use super::stated::{Stated, StatedColor};
+use super::tiff::{Directory, ORIENTATION};
+use super::{code_points, icc};
 
 pub(super) struct PngPicture {
     reader: Reader<BufReader<File>>,
@@ -36,10 +37,15 @@ const CHUNK_BYTES: usize = 64 << 20;
 
 impl PngPicture {
     pub(super) fn open(path: &Path) -> Result<(Box<dyn Source>, Facts), PictureError> {
-        let limits = png::Limits { bytes: CHUNK_BYTES };
-        let mut decoder = Decoder::new_with_limits(BufReader::new(File::open(path)?), limits);
+        let mut options = DecodeOptions::default();
+        options.set_ignore_checksums(false);
+        // A damaged chunk of colors must not count as absent.
+        options.set_skip_ancillary_crc_failures(false);
+        options.set_ignore_text_chunk(true);
+        let file = BufReader::new(File::open(path)?);
+        let mut decoder = Decoder::new_with_options(file, options);
+        decoder.set_limits(png::Limits { bytes: CHUNK_BYTES });
         decoder.set_transformations(Transformations::EXPAND);
-        decoder.set_ignore_text_chunk(true);
         let reader = decoder.read_info()?;
         let info = reader.info();
         let size = [info.width as usize, info.height as usize];
@@ -51,14 +57,19 @@ impl PngPicture {
             check_memory("an interlaced picture", row_bytes.saturating_mul(size[1] as u64))?;
         }
         let has_alpha = matches!(color, ColorType::GrayscaleAlpha | ColorType::Rgba);
-        let (space, encoding) = color_of(info);
         let facts = Facts {
             size,
-            space,
-            encoding,
-            alpha: has_alpha.then_some(Alpha::Straight),
+            color: stated_color(info)?,
+            last_sample: match has_alpha {
+                true => LastSample::Alpha(Alpha::Straight),
+                false => LastSample::Absent,
+            },
             windows: None,
             block_rows: 1,
+            orientation: match &info.exif_metadata {
+                Some(exif) => Directory::read(Cursor::new(&exif[..]))?.integer(ORIENTATION, 1)?,
+                None => 1,
+            },
         };
         let row = vec![0; usize::try_from(row_bytes).unwrap_or(0)];
         let deep = depth == BitDepth::Sixteen;
@@ -69,6 +80,7 @@ impl PngPicture {
         if self.whole.is_none() {
             let mut bytes = vec![0; self.row.len() * self.reader.info().height as usize];
             self.reader.next_frame(&mut bytes)?;
+            self.reader.finish()?;
             self.whole = Some(bytes);
         }
         Ok(self.whole.as_deref().unwrap_or(&[]))
@@ -83,9 +95,14 @@ impl Source for PngPicture {
             let bytes = &self.whole()?[rows.start * row_bytes..rows.end * row_bytes];
             to_fractions(bytes, deep, &mut samples);
         } else {
+            let is_last = rows.end == self.reader.info().height as usize;
             for _ in rows {
                 self.reader.read_row(&mut self.row)?;
                 to_fractions(&self.row, self.deep, &mut samples);
+            }
+            if is_last {
+                // The checksums of the last chunk come after its last row.
+                self.reader.finish()?;
             }
         }
         Ok(pixels(&samples, self.channels))
@@ -102,16 +119,19 @@ fn to_fractions(bytes: &[u8], deep: bool, to: &mut Vec<f32>) {
     }
 }
 
-/// Space and encoding that a file states, from the chunk of the highest priority.
-fn color_of(info: &Info<'_>) -> (Option<RgbSpace>, Option<Encoding>) {
-    if let Some(code_points) = info.coding_independent_code_points {
-        return of_code_points(code_points);
+/// What a file states, by the chunk of the highest priority: cICP, iCCP, sRGB, then gAMA and cHRM.
+fn stated_color(info: &Info<'_>) -> Result<StatedColor, PictureError> {
+    if let Some(points) = info.coding_independent_code_points {
+        let (primaries, transfer) = (points.color_primaries, points.transfer_function);
+        let is_full_range = points.is_video_full_range_image;
+        return code_points::stated(primaries, transfer, points.matrix_coefficients, is_full_range);
     }
-    if info.icc_profile.is_some() {
-        return (None, None);
+    if let Some(profile) = &info.icc_profile {
+        return icc::stated(profile);
     }
     if info.srgb.is_some() {
-        return (RgbSpace::named("srgb").ok(), Some(Encoding::Srgb));
+        let space = RgbSpace::named("srgb").expect("it is built in");
+        return Ok(StatedColor::yes(space, Encoding::Srgb, "sRGB"));
     }
     let pair = |(x, y): (png::ScaledFloat, png::ScaledFloat)| {
         [x, y].map(|v| f64::from(v.into_scaled()) / f64::from(png::ScaledFloat::SCALING))
@@ -119,8 +139,11 @@ fn color_of(info: &Info<'_>) -> (Option<RgbSpace>, Option<Encoding>) {
     let stated = info
         .chrm_chunk
         .and_then(|c| space([pair(c.red), pair(c.green), pair(c.blue)], pair(c.white)));
-    let gamma = info.gama_chunk.map(|g| f64::from(g.into_scaled()));
-    (stated, gamma.and_then(of_gamma))
+    let gamma = info.gama_chunk.and_then(|g| of_gamma(f64::from(g.into_scaled())));
+    Ok(StatedColor {
+        space: stated.map_or(Stated::No, |space| Stated::yes(space, "cHRM")),
+        encoding: gamma.map_or(Stated::No, |encoding| Stated::yes(encoding, "gAMA")),
+    })
 }
 
 /// The encoding of a gAMA chunk, which states 100000/γ.
@@ -130,25 +153,4 @@ fn of_gamma(stated: f64) -> Option<Encoding> {
         1.0 => Some(Encoding::Linear),
         _ => Some(Encoding::Gamma(gamma)).filter(|_| gamma.is_finite()),
     }
-}
-
-/// The space and encoding of code points of ITU-T H.273, if they are supported.
-fn of_code_points(points: CodingIndependentCodePoints) -> (Option<RgbSpace>, Option<Encoding>) {
-    if points.matrix_coefficients != 0 || !points.is_video_full_range_image {
-        return (None, None);
-    }
-    let name = match points.color_primaries {
-        1 => Some("srgb"),
-        9 => Some("rec2020"),
-        12 => Some("p3-d65"),
-        _ => None,
-    };
-    let encoding = match points.transfer_function {
-        4 => Some(Encoding::Gamma(2.2)),
-        5 => Some(Encoding::Gamma(2.8)),
-        8 => Some(Encoding::Linear),
-        13 => Some(Encoding::Srgb),
-        _ => None,
-    };
-    (name.and_then(|name| RgbSpace::named(name).ok()), encoding)
 }

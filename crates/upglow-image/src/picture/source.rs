@@ -3,10 +3,8 @@
 use std::fmt::Debug;
 use std::ops::Range;
 
-use upglow_color::RgbSpace;
-
-use super::encoding::Encoding;
 use super::error::PictureError;
+use super::stated::StatedColor;
 use crate::exr::header::{MAX_SIDE, Window};
 
 /// An open picture of one format.
@@ -18,28 +16,42 @@ pub(super) trait Source: Debug + Send {
 /// How colors and alpha are combined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Alpha {
-    /// Colors are multiplied by alpha, as in OpenEXR.
+    /// Stored colors are multiplied by alpha, as in OpenEXR.
     Associated,
     /// Colors are not multiplied by alpha, as in PNG.
     Straight,
+}
+
+/// What a file says of the sample after the colors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum LastSample {
+    /// There is none.
+    Absent,
+    /// It is alpha.
+    Alpha(Alpha),
+    /// It is something else, unless the caller declares it to be alpha.
+    NotAlpha,
+    /// Nothing.
+    Unstated,
 }
 
 /// Facts about a picture.
 #[derive(Clone, Debug)]
 pub(super) struct Facts {
     pub(super) size: [usize; 2],
-    pub(super) space: Option<RgbSpace>,
-    pub(super) encoding: Option<Encoding>,
-    pub(super) alpha: Option<Alpha>,
+    pub(super) color: StatedColor,
+    pub(super) last_sample: LastSample,
     pub(super) windows: Option<[Window; 2]>,
     /// Rows that are stored together.
     pub(super) block_rows: usize,
+    /// Orientation as in TIFF and Exif, 1 to 8; 1 is upright.
+    pub(super) orientation: u64,
 }
 
 /// Most bytes that are decompressed at once if a file cannot be read by bands.
 pub(super) const MAX_AT_ONCE: u64 = 1 << 30;
 
-/// Colors and alpha of some rows.
+/// Colors of some rows, and their alpha or other last sample.
 pub(super) type Pixels = (Vec<[f32; 3]>, Option<Vec<f32>>);
 
 /// Separates interleaved samples into colors and alpha.

@@ -22,7 +22,7 @@ use crate::exr::attribute::{Attributes, chromaticities};
 use crate::exr::header::Sample;
 use crate::exr::reader::ExrReader;
 use crate::exr::writer::{ExrDescription, ExrWriter};
-use crate::picture::linear::Assumed;
+use crate::picture::stated::Declared;
 
 const SIZE: [usize; 2] = [3, 2];
 
@@ -283,7 +283,8 @@ fn baked(folder: &Path, name: &str, form: Form, model: &Model) -> (PathBuf, Cube
     write(&input, &names, Attributes::from([space]), &colors.map(|c| c.to_vec()));
     let cube = build_cube(&Contract::default(), model, Preset::Konig2020.options(), 5, &Unwatched)
         .unwrap();
-    let options = BakeOptions { assumed: Assumed::default(), repair: None, sample: Sample::Float };
+    let options =
+        BakeOptions { declared: Declared::default(), repair: None, sample: Sample::Float };
     let output = folder.join(name);
     Baker::new(&cube, form, options).unwrap().bake(&input, &output, &Unwatched).unwrap();
     (output, cube)
