@@ -4,6 +4,7 @@
 //! work. Data goes to standard output; progress, warnings and errors go to standard error.
 
 mod args;
+mod batch;
 mod commands;
 mod files;
 mod output;

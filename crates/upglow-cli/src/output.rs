@@ -10,6 +10,11 @@ pub(crate) fn warn(message: impl Display) {
     eprintln!("upglow: warning: {message}");
 }
 
+/// Prints on standard error what is wrong with one picture of several.
+pub(crate) fn failed(line: &str) {
+    eprintln!("upglow: {}", line.replace(['\n', '\r'], " "));
+}
+
 /// Lines of names and values, with the values aligned.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Lines {

@@ -8,24 +8,32 @@ use upglow_terminal::Failure;
 /// Suffixes of the pictures in a folder.
 const SUFFIXES: [&str; 4] = ["exr", "tif", "tiff", "png"];
 
-/// The given pictures, and those in the given folders, sorted by name within each folder.
-pub(crate) fn find(inputs: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
-    let mut found = Vec::new();
+/// The pictures of a command.
+#[derive(Debug, Default)]
+pub(crate) struct Inputs {
+    /// The given pictures, and those in the given folders, sorted by name within each folder.
+    pub(crate) pictures: Vec<PathBuf>,
+    /// What the folders hold beside them, without hidden files.
+    pub(crate) left_out: Vec<PathBuf>,
+}
+
+/// The pictures among the inputs and in the folders among them.
+pub(crate) fn find(inputs: &[PathBuf]) -> Result<Inputs, Failure> {
+    let mut found = Inputs::default();
     for input in inputs {
         if !input.is_dir() {
-            check_there(input, "a picture")?;
-            found.push(input.clone());
+            found.pictures.push(input.clone());
             continue;
         }
-        let pictures = pictures_in(input)?;
-        if pictures.is_empty() {
+        let before = found.pictures.len();
+        add_folder(input, &mut found)?;
+        if found.pictures.len() == before {
             let suffixes = SUFFIXES.join(", ");
             return Err(Failure::file(
                 input,
                 format!("a folder without pictures, expected files that end in {suffixes}"),
             ));
         }
-        found.extend(pictures);
     }
     Ok(found)
 }
@@ -41,17 +49,24 @@ pub(crate) fn check_there(path: &Path, expected: &str) -> Result<(), Failure> {
     }
 }
 
-fn pictures_in(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+fn add_folder(folder: &Path, to: &mut Inputs) -> Result<(), Failure> {
     let unread = |error| Failure::system(folder, &error, "a folder of pictures");
-    let mut pictures = Vec::new();
+    let mut paths = Vec::new();
     for entry in folder.read_dir().map_err(unread)? {
-        let path = entry.map_err(unread)?.path();
-        if path.is_file() && is_picture(&path) {
-            pictures.push(path);
-        }
+        paths.push(entry.map_err(unread)?.path());
     }
-    pictures.sort();
-    Ok(pictures)
+    paths.retain(|path| !is_hidden(path));
+    paths.sort();
+    for path in paths {
+        let is_picture = !path.is_dir() && is_picture(&path);
+        if is_picture { &mut to.pictures } else { &mut to.left_out }.push(path);
+    }
+    Ok(())
+}
+
+/// Whether a file is hidden, as the `._x` that some systems write beside each x.
+fn is_hidden(path: &Path) -> bool {
+    path.file_name().is_some_and(|name| name.as_encoded_bytes().starts_with(b"."))
 }
 
 fn is_picture(path: &Path) -> bool {
@@ -143,11 +158,15 @@ mod tests {
     #[test]
     fn pictures_of_a_folder_are_sorted() {
         let folder = tempfile::tempdir().unwrap();
-        for name in ["b.EXR", "a.png", "notes.txt"] {
+        for name in ["b.EXR", "a.png", "notes.txt", "._a.png", ".hidden.exr"] {
             std::fs::write(folder.path().join(name), "").unwrap();
         }
         let found = find(&[folder.path().to_owned()]).unwrap();
-        let names: Vec<_> = found.iter().filter_map(|path| path.file_name()).collect();
-        assert_eq!(names, ["a.png", "b.EXR"]);
+        let names = |paths: &[PathBuf]| -> Vec<String> {
+            let name = |path: &PathBuf| path.file_name().map(|n| n.to_string_lossy().into_owned());
+            paths.iter().filter_map(name).collect()
+        };
+        assert_eq!(names(&found.pictures), ["a.png", "b.EXR"]);
+        assert_eq!(names(&found.left_out), ["notes.txt"]);
     }
 }

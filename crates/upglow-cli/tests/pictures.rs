@@ -62,7 +62,7 @@ fn the_examples_are_those_of_the_repository() {
 #[test]
 fn check_says_what_each_texel_needs() {
     let folder = desk();
-    let found = folder.json("check tile.exr --cube cube -o page.html --heat-map heat.png");
+    let found = folder.picture("check tile.exr --cube cube -o page.html --heat-map heat.png");
     assert_eq!(
         (&found["width"], &found["texels"], &found["no_color"]),
         (&2.into(), &4.into(), &0.into())
@@ -91,7 +91,7 @@ fn check_counts_and_locates_what_is_out_of_range() {
     let flawed =
         [[2.0, 0.5, 0.5], [0.5, -0.5, 0.5], [f32::NAN, 0.0, 0.0], [0.0, f32::INFINITY, 0.0]];
     picture(&folder, "flawed.exr", 4, &flawed, true);
-    let found = folder.json("check flawed.exr");
+    let found = folder.picture("check flawed.exr");
     for (x, (count, flaw)) in [
         ("above_one", "above 1"),
         ("negative", "negative"),
@@ -112,7 +112,7 @@ fn check_counts_and_locates_what_is_out_of_range() {
 #[test]
 fn a_material_is_baked_and_read_back() {
     let folder = desk();
-    let told = folder.json("bake cube tile.exr -o tile.material.exr");
+    let told = folder.picture("bake cube tile.exr -o tile.material.exr");
     assert_eq!((&told["form"], &told["channels"]), (&"material".into(), &6.into()));
     assert_eq!(told["bytes"], folder.read("tile.material.exr").len());
     assert_eq!(told["kinds"], kinds(1, 1, 0, 2));
@@ -145,7 +145,7 @@ fn spectral_files_are_well_formed_and_agree() {
     let folder = desk();
     folder.done("bake cube tile.exr -o full.exr --as spectral --bands 400:700:20 --sample float");
     let compact = "--as spectral --bands 400:700:20 --sample float --compact";
-    let told = folder.json(&format!("bake cube tile.exr -o compact.exr {compact}"));
+    let told = folder.picture(&format!("bake cube tile.exr -o compact.exr {compact}"));
     assert_eq!(told["channels"], 3 + 16 + 8);
     for (file, pairs, compact) in [("full.exr", 120, false), ("compact.exr", 0, true)] {
         let found = folder.json(&format!("lint {file}"));
@@ -170,7 +170,7 @@ fn spectral_files_are_well_formed_and_agree() {
 #[test]
 fn radiance_under_the_cubes_own_light_is_the_picture() {
     let folder = desk();
-    let told = folder.json("bake cube tile.exr -o light.exr --as radiance --light D65");
+    let told = folder.picture("bake cube tile.exr -o light.exr --as radiance --light D65");
     assert_eq!(told["channels"], 3);
     let line = folder.refused(1, "read light.exr --at 0,0");
     assert_eq!(
@@ -178,7 +178,7 @@ fn radiance_under_the_cubes_own_light_is_the_picture() {
         "light.exr: colors under a light, expected a file baked as material or spectral"
     );
     // It can be checked as any picture, and its gray is still there.
-    let found = folder.json("check light.exr");
+    let found = folder.picture("check light.exr");
     assert_eq!(found["rgb_space"], "acescg");
 }
 
@@ -205,8 +205,9 @@ fn folders_and_udim_tiles_keep_their_names() {
             "wall.material.1002.exr"
         ]
     );
-    let lines = folder.done("--json check set");
-    assert_eq!(lines.lines().count(), 4);
+    let told = folder.json("check set");
+    assert_eq!(told["pictures"].as_array().unwrap().len(), 4);
+    assert_eq!(told["left_out"], serde_json::json!(["set/notes.txt"]));
     folder.done("check set -o page.html");
     let line = folder.refused(1, "bake cube set -o set");
     assert!(line.starts_with("set: the folder of the pictures, expected another"), "{line}");
@@ -228,7 +229,7 @@ fn what_cannot_be_baked_is_repaired_only_if_asked() {
          the cube; give --repair clip, scale or nearest"
     );
     for (repair, count) in [("clip", 2), ("scale", 4), ("nearest", 2)] {
-        let told = folder.json(&format!("bake cube bright.exr -o out.exr --repair {repair}"));
+        let told = folder.picture(&format!("bake cube bright.exr -o out.exr --repair {repair}"));
         assert_eq!(told["repaired"], count, "{repair}");
     }
 }
@@ -242,7 +243,8 @@ fn pictures_that_are_refused() {
     folder.write("head.exr", &whole[..60]);
     folder.write("text.exr", "no picture");
     folder.write("empty.png", "");
-    let space = "unsaid.exr: the file does not name its RGB space, expected one to be given; give";
+    let space = "unsaid.exr: the file does not state its RGB space, expected a declaration; if it is \
+                 ACEScg, type: upglow ";
     let cases = [
         ("bake cube unsaid.exr -o out.exr", space),
         ("check unsaid.exr", space),
@@ -294,7 +296,13 @@ fn options_that_do_not_fit() {
             "bake cube tile.exr -o x.exr --repair wish",
             "--repair: unknown repair \"wish\", expected clip",
         ),
-        ("bake cube tile.exr -o x.exr --space rec709", "--space: unknown RGB space \"rec709\""),
+        ("bake cube tile.exr -o x.exr --space rec", "--space: unknown RGB space \"rec\""),
+        ("bake cube tile.exr -o x.exr --space data", "--space: data, which is no color, expected"),
+        ("build -o x --space srgb_ap1_scene", "--space: srgb_ap1_scene, expected an RGB space of"),
+        (
+            "check tile.exr --alpha some",
+            "--alpha: unknown use of alpha \"some\", expected straight",
+        ),
         (
             "bake cube tile.exr -o x.exr --encoding log",
             "--encoding: unknown encoding \"log\", expected",
@@ -385,4 +393,97 @@ fn a_table_of_coefficients_comes_back_with_or_without_its_trailer() {
     folder.write("altered.coeff", altered);
     let line = folder.refused(1, "inspect altered.coeff --space srgb");
     assert!(line.starts_with("altered.coeff: ") && line.contains("expected"), "{line}");
+}
+
+/// A folder of pictures of which `bad.exr` is damaged.
+fn mixed(folder: &Folder) {
+    for name in ["set/a.exr", "set/bad.exr", "set/c.exr"] {
+        picture(folder, name, 2, &TILE, true);
+    }
+    let whole = folder.read("set/bad.exr");
+    folder.write("set/bad.exr", &whole[..whole.len() - 9]);
+    folder.write("set/notes.txt", "no picture");
+    folder.write("set/._a.exr", "hidden");
+}
+
+#[test]
+fn a_bad_picture_is_named_and_the_rest_is_baked() {
+    let folder = desk();
+    mixed(&folder);
+    let run = folder.run("bake cube set absent.png -o out");
+    assert_eq!(run.status, 1);
+    let lines: Vec<&str> = run.stderr.lines().collect();
+    assert!(lines[0].starts_with("upglow: set/bad.exr: ") && lines[0].contains("expected"));
+    assert!(lines[1].starts_with("upglow: absent.png: no such file or folder, expected a picture"));
+    assert_eq!(lines[2], "upglow: 2 of 4 pictures were not baked, named above, expected none");
+    assert_eq!(lines.len(), 3);
+    assert!(run.stdout.contains("pictures:  2 baked, 2 failed"), "{}", run.stdout);
+    assert!(run.stdout.contains("1 that are no pictures: set/notes.txt"), "{}", run.stdout);
+    for name in ["a", "c"] {
+        assert!(folder.path().join(format!("out/{name}.material.exr")).is_file());
+    }
+    assert!(!folder.path().join("out/bad.material.exr").exists());
+
+    let run = folder.run("--json bake cube set -o out");
+    let told: Value = serde_json::from_str(&run.stdout).unwrap();
+    assert_eq!(run.status, 1);
+    assert_eq!(told["pictures"].as_array().unwrap().len(), 2);
+    assert_eq!(told["pictures"][0]["interpretation"]["space"]["used"], "acescg");
+    assert_eq!(told["failed"][0]["file"], "set/bad.exr");
+    assert_eq!(told["left_out"], serde_json::json!(["set/notes.txt"]));
+    let run = folder.run("--json bake cube set/bad.exr -o x.exr");
+    let told: Value = serde_json::from_str(&run.stdout).unwrap();
+    assert_eq!((run.status, &told["failed"][0]["file"]), (1, &"set/bad.exr".into()));
+    assert!(one_line(&run.stderr).starts_with("set/bad.exr: "));
+}
+
+#[test]
+fn the_page_of_a_check_has_the_good_pictures() {
+    let folder = desk();
+    mixed(&folder);
+    let run = folder.run("check set -o page.html");
+    assert_eq!(run.status, 1);
+    assert!(run.stdout.contains("pictures:  2 checked, 1 failed"), "{}", run.stdout);
+    let page = String::from_utf8(folder.read("page.html")).unwrap();
+    assert!(page.contains("set/a.exr") && page.contains("set/c.exr"));
+    assert!(!page.contains("bad.exr"));
+}
+
+#[test]
+fn an_update_bakes_what_has_changed() {
+    let folder = desk();
+    mixed(&folder);
+    std::fs::remove_file(folder.path().join("set/bad.exr")).unwrap();
+    let unchanged = |words: &str| {
+        let told = folder.json(&format!("bake cube set -o out --update {words}"));
+        let names = told["unchanged"].as_array().unwrap().iter();
+        names.map(|name| name.as_str().unwrap().to_owned()).collect::<Vec<_>>()
+    };
+    assert_eq!(unchanged(""), [""; 0]);
+    let before = folder.read("out/a.material.exr");
+    assert_eq!(unchanged(""), ["set/a.exr", "set/c.exr"]);
+    assert_eq!(folder.read("out/a.material.exr"), before);
+    // Other options, another picture, another cube, and a damaged output are baked again.
+    assert_eq!(unchanged("--fast"), [""; 0]);
+    assert_eq!(unchanged(""), [""; 0]);
+    picture(&folder, "set/c.exr", 2, &[GRAY; 4], true);
+    assert_eq!(unchanged(""), ["set/a.exr"]);
+    folder.write("out/c.material.exr", "torn");
+    assert_eq!(unchanged(""), ["set/a.exr"]);
+    folder.done("build --preset konig2020 --resolution 3 -o cube");
+    assert_eq!(unchanged(""), [""; 0]);
+}
+
+#[test]
+fn what_is_declared_wins_and_the_report_says_what_was_used() {
+    let folder = desk();
+    let text = folder.done("bake cube tile.exr -o x.exr --space lin_rec709_scene --repair clip");
+    assert!(text.contains("srgb (declared; the file states acescg (chromaticities))"), "{text}");
+    let told = folder.picture("check tile.exr --space bt2020 --encoding 2.2");
+    let interpretation = &told["interpretation"];
+    assert_eq!(interpretation["space"]["used"], "rec2020");
+    assert_eq!(interpretation["space"]["overruled"], "acescg (chromaticities)");
+    assert_eq!(interpretation["encoding"]["by"], "declared");
+    let line = folder.refused(1, "check tile.exr --layer beauty");
+    assert!(line.contains("\"beauty\", expected one of the layers R, G, B"), "{line}");
 }

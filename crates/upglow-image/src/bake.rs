@@ -9,9 +9,12 @@ mod radiance;
 pub(crate) mod repair;
 mod spectral;
 
+use std::fs::File;
+use std::io::{self, Read};
 use std::path::Path;
 
 use rayon::prelude::*;
+use sha2::{Digest, Sha256};
 use upglow::{Cube, LookupError};
 use upglow_color::{Grid, Illuminant, LinearRgb};
 use upglow_fit::{FitOptionsError, KindCounts, StandingTable, Stopped, Watch};
@@ -146,6 +149,8 @@ pub struct Baker<'c> {
     maker: Box<dyn Maker + 'c>,
     /// Names of the channels in the order of the planes, without alpha, which comes last.
     channels: Vec<String>,
+    /// A hash of the program's version, the cube, the form and the options.
+    made: Sha256,
 }
 
 /// Most bytes of the channels of a band, which limits the rows of wide pictures with many channels.
@@ -161,6 +166,9 @@ impl<'c> Baker<'c> {
     ///
     /// [`BakeError`] if the cube does not support the form.
     pub fn new(cube: &'c Cube, form: Form, options: BakeOptions) -> Result<Self, BakeError> {
+        let mut made = Sha256::new();
+        made.update(format!("{} {form:?} {options:?}", env!("CARGO_PKG_VERSION")));
+        made.update(Sha256::digest(cube.to_bytes()));
         let is_polished = form == Form::Material;
         let maker: Box<dyn Maker + 'c> = match form {
             Form::Material | Form::InterpolatedMaterial => {
@@ -171,7 +179,7 @@ impl<'c> Baker<'c> {
             Form::Radiance { light } => Box::new(RadianceMaker::new(cube, light)),
         };
         let channels = maker.channels();
-        Ok(Self { cube, options, maker, channels })
+        Ok(Self { cube, options, maker, channels, made })
     }
 
     /// Bakes the picture at `input` into a file at `output`, on all threads of the current rayon
@@ -199,7 +207,10 @@ impl<'c> Baker<'c> {
             (Some(repair), Some(table)) => Some(self.repairer(repair, table, input, watch)?),
             _ => None,
         };
-        let mut writer = ExrWriter::create(output, self.description(picture.picture()))?;
+        let mut description = self.description(picture.picture());
+        let made = self.made_from(input).map_err(PictureError::Io)?;
+        description.attributes.insert(attributes::MADE.into(), made.into());
+        let mut writer = ExrWriter::create(output, description)?;
         let interpretation = picture.interpretation().clone();
         let mut baked =
             Baked { size, interpretation, channels: 0, repaired: 0, kinds: None, bytes: 0 };
@@ -218,6 +229,29 @@ impl<'c> Baker<'c> {
         })?;
         baked.bytes = writer.finish()?;
         Ok(baked)
+    }
+
+    /// Whether the file at `output` was baked from the picture at `input` with the same cube, form and
+    /// options, by the same version of this library.
+    pub fn is_made(&self, input: impl AsRef<Path>, output: impl AsRef<Path>) -> bool {
+        let Ok(reader) = ExrReader::open(output) else { return false };
+        let stated = reader.attributes().get(attributes::MADE).and_then(|made| made.as_text());
+        stated.is_some_and(|stated| self.made_from(input.as_ref()).is_ok_and(|made| made == stated))
+    }
+
+    /// A hash of everything that makes the file of a picture.
+    fn made_from(&self, input: &Path) -> io::Result<String> {
+        /// Bytes that are read at a time.
+        const PIECE: usize = 1 << 16;
+        let (mut file, mut piece) = (File::open(input)?, vec![0; PIECE]);
+        let mut made = self.made.clone();
+        loop {
+            match file.read(&mut piece)? {
+                0 => break,
+                count => made.update(&piece[..count]),
+            }
+        }
+        Ok(made.finalize().iter().map(|byte| format!("{byte:02x}")).collect())
     }
 
     /// A picture that is converted to the cube's RGB space.

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use upglow_color::{Adaptation, Grid, RgbSpace, choices};
+use upglow_color::{Adaptation, Grid, choices};
 use upglow_image::{Declared, DeclaredAlpha, Encoding, Repair, Sample};
 use upglow_terminal::{Threads, word};
 
@@ -53,6 +53,9 @@ pub(crate) struct BakeArgs {
     /// EXR file to write for one picture, or folder for several; created if it does not exist
     #[arg(long, short, value_name = "OUT")]
     pub(crate) output: PathBuf,
+    /// Skip pictures whose output was made from the same picture, cube and options
+    #[arg(long)]
+    pub(crate) update: bool,
     /// What to write: material stores the parameters of one material per texel; spectral stores
     /// reflectance in bands and re-radiation between them; radiance stores the color under --light
     #[arg(long = "as", default_value_t = BakeForm::Material, value_name = "NAME", value_parser = word::<BakeForm>())]

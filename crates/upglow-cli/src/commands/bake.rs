@@ -6,10 +6,13 @@ use std::time::Instant;
 use serde::Serialize;
 use upglow_color::{Choice, Grid};
 use upglow_fit::KindCounts;
-use upglow_image::{BakeError, BakeOptions, Baker, Form, PictureError};
+use upglow_image::{
+    BakeError, BakeOptions, Baker, DeclaredAlpha, Form, Interpretation, Missing, PictureError,
+};
 use upglow_terminal::{Console, Failure, Report};
 
 use crate::args::{BakeArgs, BakeForm};
+use crate::batch::Batch;
 use crate::output::Lines;
 use crate::{files, pictures, plan};
 
@@ -27,6 +30,7 @@ struct BakeReport {
     kinds: Option<KindCounts>,
     bytes: u64,
     time_s: f64,
+    interpretation: Interpretation,
 }
 
 pub(crate) fn run(args: &BakeArgs, console: &Console) -> Result<(), Failure> {
@@ -37,28 +41,39 @@ pub(crate) fn run(args: &BakeArgs, console: &Console) -> Result<(), Failure> {
         sample: args.result.sample.into(),
     };
     let inputs = pictures::find(&args.inputs)?;
-    let outputs = pictures::outputs(&inputs, &args.output, args.form.name())?;
-    check_outputs(args, &inputs, &outputs)?;
+    let outputs = pictures::outputs(&inputs.pictures, &args.output, args.form.name())?;
+    check_outputs(args, &inputs.pictures, &outputs)?;
     let cube = files::read_cube(&args.cube)?;
     let baker = Baker::new(&cube, form, options).map_err(|error| refused(error, &args.cube))?;
-    for (input, output) in inputs.iter().zip(&outputs) {
+    let mut batch = Batch::new("baked", &inputs);
+    let pairs = inputs.pictures.iter().zip(&outputs);
+    let ended = pairs.into_iter().try_for_each(|(input, output)| {
+        if args.update && baker.is_made(input, output) {
+            batch.add_unchanged(input);
+            return Ok(());
+        }
         let start = Instant::now();
-        let baked = console.work(args.threads, |bar| baker.bake(input, output, bar))?;
-        let baked = baked.map_err(|error| failure(error, input, output))?;
-        console.print(&BakeReport {
-            input: input.display().to_string(),
-            file: output.display().to_string(),
-            form: args.form.name(),
-            width: baked.size[0],
-            height: baked.size[1],
-            channels: baked.channels,
-            repaired: baked.repaired,
-            kinds: baked.kinds,
-            bytes: baked.bytes,
-            time_s: start.elapsed().as_secs_f64(),
-        })?;
-    }
-    Ok(())
+        match console.work(args.threads, |bar| baker.bake(input, output, bar))? {
+            Ok(baked) => batch.add(
+                console,
+                BakeReport {
+                    input: input.display().to_string(),
+                    file: output.display().to_string(),
+                    form: args.form.name(),
+                    width: baked.size[0],
+                    height: baked.size[1],
+                    channels: baked.channels,
+                    repaired: baked.repaired,
+                    kinds: baked.kinds,
+                    bytes: baked.bytes,
+                    time_s: start.elapsed().as_secs_f64(),
+                    interpretation: baked.interpretation,
+                },
+            ),
+            Err(error) => batch.add_failure(input, failure(error, input, output)),
+        }
+    });
+    batch.finish(console, ended)
 }
 
 /// The bands that most other programs use.
@@ -128,19 +143,51 @@ fn failure(error: BakeError, input: &Path, output: &Path) -> Failure {
 
 /// The fault of a picture, and the option that solves it.
 pub(super) fn picture_failure(error: PictureError, input: &Path) -> Failure {
-    let remedy = match error {
-        PictureError::Space => "; give --space",
-        PictureError::Encoding => "; give --encoding",
-        _ => "",
+    let remedy = match &error {
+        PictureError::Io(error) => return Failure::system(input, error, "a picture"),
+        PictureError::Unstated { missing, .. } => {
+            let (name, options) = match missing {
+                Missing::Space => ("ACEScg", "--space acescg"),
+                Missing::Encoding => ("encoded as sRGB", "--encoding srgb"),
+                Missing::Both => ("sRGB", "--space srgb --encoding srgb"),
+            };
+            format!("; if it is {name}, type: {} {options}", typed())
+        }
+        PictureError::Alpha => "; give --alpha straight, associated or none".into(),
+        PictureError::Layers { .. } => "; give --layer NAME".into(),
+        PictureError::NoLayers => "; leave --layer out".into(),
+        _ => String::new(),
     };
-    Failure::file(input, error).with(remedy)
+    Failure::file(input, error).with(&remedy)
+}
+
+/// The command line of this run, as it can be typed again.
+fn typed() -> String {
+    let quoted = |word: std::ffi::OsString| {
+        let word = word.to_string_lossy().into_owned();
+        let is_plain = |c: char| c.is_alphanumeric() || "-_=./:,+%@".contains(c);
+        if !word.is_empty() && word.chars().all(is_plain) {
+            word
+        } else {
+            format!("'{}'", word.replace('\'', "'\\''"))
+        }
+    };
+    let words = std::env::args_os().skip(1).map(quoted);
+    ["upglow".to_owned()].into_iter().chain(words).collect::<Vec<_>>().join(" ")
 }
 
 impl Report for BakeReport {
     fn text(&self) -> String {
         let Self { form, width, height, channels, repaired, time_s, .. } = self;
         let mut lines = Lines::default();
-        lines.add("picture", format_args!("{}, {width} × {height}", self.input));
+        let Interpretation { space, encoding, alpha } = &self.interpretation;
+        lines
+            .add("picture", format_args!("{}, {width} × {height}", self.input))
+            .add("RGB space", space)
+            .add("encoding", encoding);
+        if *alpha != DeclaredAlpha::None.name() {
+            lines.add("alpha", alpha);
+        }
         if *repaired > 0 {
             lines.add("repaired", format_args!("{repaired} texels"));
         }

@@ -10,6 +10,7 @@ use upglow_terminal::{Console, Failure, Report};
 
 use super::bake::picture_failure;
 use crate::args::CheckArgs;
+use crate::batch::Batch;
 use crate::output::Lines;
 use crate::{files, pictures, plan};
 
@@ -24,7 +25,7 @@ struct PictureReport {
 
 pub(crate) fn run(args: &CheckArgs, console: &Console) -> Result<(), Failure> {
     let inputs = pictures::find(&args.inputs)?;
-    check_outputs(args, &inputs)?;
+    check_outputs(args, &inputs.pictures)?;
     let cube = args.cube.as_deref().map(files::read_cube).transpose()?;
     let contract = contract(args, cube.as_ref())?;
     let mut checker = Checker::new(contract, args.picture.declared());
@@ -32,22 +33,29 @@ pub(crate) fn run(args: &CheckArgs, console: &Console) -> Result<(), Failure> {
         let checked = checker.with_cube(cube, path.display().to_string());
         checker = checked.map_err(|error| Failure::option("--cube", error))?;
     }
+    let mut batch = Batch::new("checked", &inputs);
     let mut found = Vec::new();
-    for input in &inputs {
-        let report = console.work(args.threads, |bar| checker.check(input, bar))?;
-        found.push(report.map_err(|error| failure(error, input))?);
-    }
-    if let Some(output) = &args.output {
-        files::write(output, CheckReport::page(&found).as_bytes())?;
-    }
-    if let (Some(path), [report]) = (&args.heat_map, &found[..]) {
-        files::write(path, &report.heat_map_png())?;
-    }
-    let shown = |path: &Option<PathBuf>| path.as_ref().map(|path| path.display().to_string());
-    found.into_iter().try_for_each(|found| {
-        let (heat_map, page) = (shown(&args.heat_map), shown(&args.output));
-        console.print(&PictureReport { found, heat_map, page })
-    })
+    let ended = inputs.pictures.iter().try_for_each(|input| {
+        match console.work(args.threads, |bar| checker.check(input, bar))? {
+            Ok(report) => found.push(report),
+            Err(error) => batch.add_failure(input, failure(error, input))?,
+        }
+        Ok(())
+    });
+    let ended = ended.and_then(|()| {
+        if let Some(output) = args.output.as_ref().filter(|_| !found.is_empty()) {
+            files::write(output, CheckReport::page(&found).as_bytes())?;
+        }
+        if let (Some(path), [report]) = (&args.heat_map, &found[..]) {
+            files::write(path, &report.heat_map_png())?;
+        }
+        let shown = |path: &Option<PathBuf>| path.as_ref().map(|path| path.display().to_string());
+        found.into_iter().try_for_each(|found| {
+            let (heat_map, page) = (shown(&args.heat_map), shown(&args.output));
+            batch.add(console, PictureReport { found, heat_map, page })
+        })
+    });
+    batch.finish(console, ended)
 }
 
 fn failure(error: CheckError, input: &Path) -> Failure {
@@ -90,12 +98,15 @@ fn rgb_text([r, g, b]: [f32; 3]) -> String {
 impl Report for PictureReport {
     fn text(&self) -> String {
         let percent = |share: f64| format!("{:.2} %", 100.0 * share);
-        let CheckReport { file, width, height, rgb_space, illuminant, counts, .. } = &self.found;
+        let CheckReport { file, width, height, interpretation, .. } = &self.found;
+        let CheckReport { rgb_space, illuminant, counts, .. } = &self.found;
         let share = |texels| percent(counts.share(texels));
         let mut lines = Lines::default();
         lines
             .add("picture", format_args!("{file}, {width} × {height}"))
-            .add("interpreted as", format_args!("{rgb_space} under {illuminant}"))
+            .add("RGB space", &interpretation.space)
+            .add("encoding", &interpretation.encoding)
+            .add("checked in", format_args!("{rgb_space} under {illuminant}"))
             .add("reflectance matches", share(counts.reflectance))
             .add("fluorescence needed", share(counts.needs_fluorescence))
             .add("no material matches", share(counts.unreachable));

@@ -80,6 +80,13 @@ impl Folder {
         serde_json::from_str(&self.done(&format!("--json {words}"))).unwrap()
     }
 
+    /// As [`Folder::json`], for a command on a single picture: the report on that.
+    pub(crate) fn picture(&self, words: &str) -> Value {
+        let mut told = self.json(words);
+        assert_eq!(told["pictures"].as_array().map(Vec::len), Some(1), "{words}: {told}");
+        told["pictures"][0].take()
+    }
+
     /// Runs the program, which must fail with this status and one line, and change no file.
     pub(crate) fn refused(&self, status: i32, words: &str) -> String {
         let before = self.names();

@@ -14,6 +14,9 @@ pub(super) const FORM: &str = "upglow.form";
 /// What the channels hold, in words.
 pub(super) const CHANNELS: &str = "upglow.channels";
 
+/// A hash of everything that made the file.
+pub(super) const MADE: &str = "upglow.made";
+
 const MODEL_KIND: &str = "upglowCube";
 
 /// The attributes of every form.

@@ -75,7 +75,7 @@ pub enum PictureError {
         expected: u64,
     },
     /// Neither the file nor the caller states an RGB space or an encoding.
-    #[error("{found} {missing}, expected it to be given")]
+    #[error("{found} {missing}, expected a declaration")]
     Unstated {
         /// What is missing.
         missing: Missing,

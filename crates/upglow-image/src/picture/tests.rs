@@ -12,6 +12,9 @@ use super::encoding::Encoding;
 use super::source::Alpha;
 use super::stated::{Declared, DeclaredAlpha};
 
+mod png_kinds;
+mod shared_pictures;
+mod stated_colors;
 mod tiff_file;
 mod tiff_kinds;
 

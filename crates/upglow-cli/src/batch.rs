@@ -1,0 +1,124 @@
+//! Work on pictures one after the other, where a bad one does not end the work on the rest.
+
+use std::path::Path;
+
+use serde::Serialize;
+use upglow_terminal::{Console, Failure, Report};
+
+use crate::output::{Lines, failed};
+use crate::pictures::Inputs;
+
+/// What became of the pictures of a command. It is the one document of `--json`.
+#[derive(Debug, Serialize)]
+pub(crate) struct Batch<R> {
+    /// What the command does with a picture, in the past tense.
+    #[serde(skip)]
+    verb: &'static str,
+    #[serde(skip)]
+    total: usize,
+    pictures: Vec<R>,
+    /// Pictures that an earlier run has already done.
+    unchanged: Vec<String>,
+    failed: Vec<FailedPicture>,
+    /// What the given folders hold beside pictures.
+    left_out: Vec<String>,
+}
+
+#[derive(Debug, Serialize)]
+struct FailedPicture {
+    file: String,
+    error: String,
+}
+
+impl<R: Report> Batch<R> {
+    pub(crate) fn new(verb: &'static str, inputs: &Inputs) -> Self {
+        let left_out = inputs.left_out.iter().map(|path| path.display().to_string()).collect();
+        let total = inputs.pictures.len();
+        Self {
+            verb,
+            total,
+            pictures: Vec::new(),
+            unchanged: Vec::new(),
+            failed: Vec::new(),
+            left_out,
+        }
+    }
+
+    /// Adds a picture that is done; as text it is printed at once.
+    pub(crate) fn add(&mut self, console: &Console, report: R) -> Result<(), Failure> {
+        if !console.json {
+            console.print(&report)?;
+        }
+        self.pictures.push(report);
+        Ok(())
+    }
+
+    /// Adds a picture that an earlier run has already done.
+    pub(crate) fn add_unchanged(&mut self, input: &Path) {
+        self.unchanged.push(input.display().to_string());
+    }
+
+    /// Adds a picture that could not be done, and names it.
+    ///
+    /// # Errors
+    ///
+    /// The failure itself, if it is not that of a picture: work then ends.
+    pub(crate) fn add_failure(&mut self, input: &Path, failure: Failure) -> Result<(), Failure> {
+        let Failure::Input(error) = failure else { return Err(failure) };
+        if self.total > 1 {
+            failed(&error);
+        }
+        self.failed.push(FailedPicture { file: input.display().to_string(), error });
+        Ok(())
+    }
+
+    /// Prints the summary, or the document. Work that `ended` early is reported as that.
+    ///
+    /// # Errors
+    ///
+    /// [`Failure`] if a picture could not be done, or work ended early.
+    pub(crate) fn finish(
+        self,
+        console: &Console,
+        ended: Result<(), Failure>,
+    ) -> Result<(), Failure> {
+        let has_summary = self.total > 1 || !self.unchanged.is_empty() || !self.left_out.is_empty();
+        if console.json || has_summary {
+            console.print(&self)?;
+        }
+        ended?;
+        match &self.failed[..] {
+            [] => Ok(()),
+            [only] if self.total == 1 => Err(Failure::Input(only.error.clone())),
+            failed => {
+                let (count, total, verb) = (failed.len(), self.total, self.verb);
+                let message = format!("{count} of {total} pictures were not {verb}, named above");
+                Err(Failure::Input(message + ", expected none"))
+            }
+        }
+    }
+}
+
+impl<R: Report> Report for Batch<R> {
+    fn text(&self) -> String {
+        /// Most names that are listed; `--json` lists all.
+        const NAMES: usize = 12;
+        let Self { verb, pictures, unchanged, failed, left_out, .. } = self;
+        let mut counts = vec![format!("{} {verb}", pictures.len())];
+        if !unchanged.is_empty() {
+            counts.push(format!("{} unchanged", unchanged.len()));
+        }
+        if !failed.is_empty() {
+            counts.push(format!("{} failed", failed.len()));
+        }
+        let mut lines = Lines::default();
+        lines.add("pictures", counts.join(", "));
+        if !left_out.is_empty() {
+            let count = left_out.len();
+            let more = if count > NAMES { ", …" } else { "" };
+            let names = left_out[..count.min(NAMES)].join(", ");
+            lines.add("left out", format_args!("{count} that are no pictures: {names}{more}"));
+        }
+        lines.to_string()
+    }
+}
