@@ -47,7 +47,7 @@ pub(crate) enum Command {
     Bake(Box<BakeArgs>),
     /// Report which texels of pictures a reflectance can match, which need fluorescence, and which
     /// no material can match
-    Check(CheckArgs),
+    Check(Box<CheckArgs>),
     /// Show the spectrum or material of one texel of a baked or spectral EXR
     Read(ReadArgs),
     /// Report whether files are well-formed spectral or bispectral EXR; exit with 1 if one is not

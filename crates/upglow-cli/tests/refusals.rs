@@ -167,7 +167,7 @@ fn invalid_observers() {
 fn command_lines_that_do_not_fit() {
     let folder = folder_with_cube();
     let cases = [
-        ("build --space rec709 -o x", "--space: unknown RGB space \"rec709\", expected acescg"),
+        ("build --space rec7 -o x", "--space: unknown RGB space \"rec7\", expected acescg"),
         ("build --space 1,2,3 -o x", "--space: unknown RGB space"),
         ("build --illuminant F11 -o x", "--illuminant: unknown illuminant \"F11\", expected D65"),
         ("build --observer hawk -o x", "--observer: unknown observer \"hawk\", expected cie-1931"),

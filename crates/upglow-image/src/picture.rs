@@ -39,7 +39,7 @@ use crate::exr::header::Window;
 /// Supported are OpenEXR (rows or tiles, every compression but HTJ2K, no deep data; R, G, B or Y, with or
 /// without A, also in a layer or part), TIFF (integers of 1 to 32 bits, floats of 16, 32 and 64 bits; gray
 /// or RGB, with or without alpha and further samples; strips or tiles, interleaved or in planes; LZW,
-/// deflate, PackBits or not compressed) and PNG (all types). Pictures that their files say are turned or
+/// deflate, `PackBits` or not compressed) and PNG (all types). Pictures that their files say are turned or
 /// mirrored are read upright.
 ///
 /// # Memory

@@ -13,7 +13,7 @@ use super::values::{PictureSpace, bands, lights, picture_space, position};
 #[command(next_help_heading = "Pictures")]
 pub(crate) struct PictureArgs {
     /// RGB space of the pictures, whatever their files state: acescg, aces2065-1, rec2020, p3-d65, srgb,
-    /// prophoto, adobe-rgb, xyz, an ID of the Color Interop Forum such as srgb_p3d65_scene, which
+    /// prophoto, adobe-rgb, xyz, an ID of the Color Interop Forum such as `g22_ap1_scene`, which
     /// states the encoding too, or eight chromaticities Rx,Ry,Gx,Gy,Bx,By,Wx,Wy
     /// [default: what each file states]
     #[arg(long, value_parser = picture_space)]

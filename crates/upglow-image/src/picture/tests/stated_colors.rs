@@ -300,7 +300,8 @@ fn profiles_of_a_matrix_and_a_curve_are_read_and_others_refused_by_name() {
             assert!((found[k] - expected[k]).abs() < 2e-4, "{found:?} {expected:?}");
         }
     }
-    let refused: [(&[(&[u8; 4], Vec<u8>)], &str); 4] = [
+    type Tag = (&'static [u8; 4], Vec<u8>);
+    let refused: [(&[Tag], &str); 4] = [
         (&[(b"A2B0", vec![0; 8])], "an ICC profile with a table (A2B0), which"),
         (&[(b"gTRC", power(0x100))], "an ICC profile with different curves"),
         (&[(b"rTRC", b"none".to_vec())], "an ICC profile without usable curves"),

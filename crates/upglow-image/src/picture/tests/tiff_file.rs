@@ -206,7 +206,7 @@ impl TiffFile {
         let one = |value: usize| vec![value as u64];
         let each = |value: u64| vec![value; self.samples];
         let format = if matches!(self.kind, Kind::Float(_)) { 3 } else { 1 };
-        let (short, long) = (3, 4);
+        let (short, long) = (3_u16, 4);
         let mut fields = vec![
             (256, long, one(self.size[0])),
             (257, long, one(self.size[1])),
@@ -242,7 +242,7 @@ impl TiffFile {
         for (tag, kind, values) in &fields {
             let size = [(3, 2), (4, 4), (7, 1)].iter().find(|(k, _)| k == kind).unwrap().1;
             entries.push(u64::from(*tag), 2);
-            entries.push(u64::from(*kind as u16), 2);
+            entries.push(u64::from(*kind), 2);
             entries.push(values.len() as u64, word);
             let mut value = Writer { bytes: Vec::new(), file: self };
             values.iter().for_each(|v| value.push(*v, size));

@@ -71,6 +71,29 @@ const LAYOUTS: [(u16, usize, &[u16], Option<usize>); 9] = [
     (2, 6, &[0, 0, 0], None),
 ];
 
+#[test]
+fn altered_tiffs_panic_nowhere() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("x.tif");
+    for (i, (file, ..)) in readable().step_by(2003).enumerate() {
+        let whole = file.bytes();
+        // The directory is at the end; the data before it are altered more thinly.
+        let start = whole.len().saturating_sub(400);
+        for at in (0..start).step_by(211).chain((start..whole.len()).step_by(3)) {
+            let mut altered = whole.clone();
+            altered[at] = [0xff, 0, altered[at] ^ 0x11][(at + i) % 3];
+            std::fs::write(&path, altered).unwrap();
+            // A message is one line; anything but a panic is right.
+            if let Ok(mut picture) = Picture::open(&path) {
+                picture.bands(8).for_each(|band| {
+                    let message = band.err().map(|error| error.to_string()).unwrap_or_default();
+                    assert!(!message.contains('\n') && message.len() < 400, "{message}");
+                });
+            }
+        }
+    }
+}
+
 /// The predictors that a kind of sample can have with a compression.
 fn predictors(kind: Kind, compression: u16) -> &'static [u16] {
     match (kind, compression) {
@@ -166,7 +189,8 @@ fn tiffs_are_turned_upright() {
     let [width, height] = TiffFile::default().size;
     // For each orientation, where the pixel of stored column x and row y is shown: TIFF 6.0, page 36.
     let (right, bottom) = (width - 1, height - 1);
-    let shown: [(u16, fn(usize, usize, usize, usize) -> [usize; 2]); 8] = [
+    type Place = fn(usize, usize, usize, usize) -> [usize; 2];
+    let shown: [(u16, Place); 8] = [
         (1, |x, y, _, _| [x, y]),
         (2, |x, y, right, _| [right - x, y]),
         (3, |x, y, right, bottom| [right - x, bottom - y]),

@@ -33,7 +33,7 @@ pub(in super::super) struct Directory<R> {
 const MAX_VALUE: u64 = 64 << 20;
 
 impl<R: Read + Seek> Directory<R> {
-    /// Reads the first directory of TIFF or BigTIFF.
+    /// Reads the first directory of TIFF or `BigTIFF`.
     ///
     /// # Errors
     ///

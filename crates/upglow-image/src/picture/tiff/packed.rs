@@ -50,7 +50,7 @@ pub(super) struct Packed {
     file: File,
     length: u64,
     method: Method,
-    /// Whether the bits of each byte are stored in reverse (FillOrder 2).
+    /// Whether the bits of each byte are stored in reverse (`FillOrder` 2).
     is_reversed: bool,
     /// Bytes of the strip or tile that are still in the file.
     left: u64,
