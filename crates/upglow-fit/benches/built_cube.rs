@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use upglow::{Bispectral, DyeModel, DyeOptions, DyeSet, LookupTable, Model, PackedMixture};
+use upglow::{Bispectral, LookupTable, PackedMixture};
 use upglow_color::Contract;
 use upglow_fit::{Preset, Unwatched, build_cube};
 
@@ -20,10 +20,8 @@ const CALLS: usize = 4096;
 const MATERIALS: usize = 1024;
 
 static TABLE: LazyLock<LookupTable> = LazyLock::new(|| {
-    let set = DyeSet::named("konig8").expect("built in");
-    let model = Model::Dyes(DyeModel::new(set, DyeOptions::default()).expect("valid"));
-    let cube =
-        build_cube(&Contract::default(), &model, Preset::Konig2020.options(), 32, &Unwatched);
+    let (model, options) = (Preset::Natural.model(), Preset::Natural.options());
+    let cube = build_cube(&Contract::default(), &model, options, 32, &Unwatched);
     cube.expect("nobody stops it").lookup_table()
 });
 

@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use upglow::{Cube, DyeModel, DyeOptions, DyeSet, Model, Node};
+use upglow::{Cube, Node};
 use upglow_color::{Contract, Grid, LinearRgb, RgbSpace};
 use upglow_fit::{Polisher, Preset, Unwatched, build_cube};
 
@@ -29,15 +29,12 @@ enum Picture {
 
 const PICTURES: [Picture; 3] = [Picture::Srgb, Picture::Cube, Picture::Gradient];
 
-/// The cube of the preset `konig2020`, built once.
+/// The default cube, built once.
 fn cube() -> &'static Cube {
     static CUBE: OnceLock<Cube> = OnceLock::new();
     CUBE.get_or_init(|| {
-        let set = DyeSet::named("konig8").expect("it is built in");
-        let dyes = DyeModel::new(set, DyeOptions::default()).expect("the defaults are valid");
-        let (contract, model) = (Contract::default(), Model::Dyes(dyes));
-        build_cube(&contract, &model, Preset::Konig2020.options(), 32, &Unwatched)
-            .expect("nobody stops it")
+        let (model, options) = (Preset::Natural.model(), Preset::Natural.options());
+        build_cube(&Contract::default(), &model, options, 32, &Unwatched).expect("nobody stops it")
     })
 }
 

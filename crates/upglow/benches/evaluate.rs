@@ -13,7 +13,7 @@ fn main() {
     divan::main();
 }
 
-const KINDS: [Kind; 3] = [Kind::Passive, Kind::Dyes, Kind::Bells];
+const KINDS: [Kind; 4] = [Kind::Passive, Kind::Dyes, Kind::Film, Kind::Bells];
 /// So few that they stay in the first-level cache: the look-up is another bench.
 const MATERIALS: usize = 64;
 

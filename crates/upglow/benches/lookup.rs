@@ -17,7 +17,7 @@ fn main() {
 /// Unrelated colors, as of a path tracer's hits.
 #[divan::bench(args = [32, 64])]
 fn random(bencher: Bencher, resolution: usize) {
-    let table = cube(resolution, Kind::Dyes).lookup_table();
+    let table = cube(resolution, Kind::Film).lookup_table();
     let mut random = Random(1);
     // More colors than the caches' neighborhoods can be learned for.
     let rgb: Vec<[f32; 3]> = (0..65 * CALLS).map(|_| random.rgb()).collect();
@@ -33,7 +33,7 @@ fn random(bencher: Bencher, resolution: usize) {
 /// Colors that change little from one to the next, as along a texture's rows.
 #[divan::bench(args = [32, 64])]
 fn coherent(bencher: Bencher, resolution: usize) {
-    let table = cube(resolution, Kind::Dyes).lookup_table();
+    let table = cube(resolution, Kind::Film).lookup_table();
     let rgb: Vec<[f32; 3]> = (0..CALLS)
         .map(|i| {
             let t = i as f32 / CALLS as f32;
@@ -50,7 +50,7 @@ fn coherent(bencher: Bencher, resolution: usize) {
 /// The double-precision path that the table replaces.
 #[divan::bench(args = [32, 64])]
 fn random_in_double_precision(bencher: Bencher, resolution: usize) {
-    let cube = cube(resolution, Kind::Dyes);
+    let cube = cube(resolution, Kind::Film);
     let mut random = Random(1);
     let rgb: Vec<LinearRgb> = (0..CALLS).map(|_| LinearRgb(random.rgb().map(f64::from))).collect();
     bencher.counter(ItemsCount::new(CALLS)).bench_local(|| {

@@ -13,7 +13,7 @@ fn main() {
     divan::main();
 }
 
-const KINDS: [Kind; 3] = [Kind::Passive, Kind::Dyes, Kind::Bells];
+const KINDS: [Kind; 4] = [Kind::Passive, Kind::Dyes, Kind::Film, Kind::Bells];
 const MATERIALS: usize = 64;
 
 fn measure<R>(

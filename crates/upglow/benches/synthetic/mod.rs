@@ -3,7 +3,8 @@
 #![allow(dead_code, reason = "each bench uses its part")]
 
 use upglow::{
-    AnalyticModel, Cube, DyeModel, DyeOptions, DyeSet, Edge, FitRecord, Fluorescence, Model, Node,
+    Accounting, AnalyticModel, Cube, DyeModel, DyeOptions, DyeSet, Edge, FilmModel, FitRecord,
+    Fluorescence, Model, Node, QuantumYield,
 };
 use upglow_color::Contract;
 
@@ -48,8 +49,10 @@ impl Random {
 pub(crate) enum Kind {
     /// Nothing fluoresces, as for most colors of a fitted cube.
     Passive,
-    /// Every node holds two dyes of its own choice: the most expensive cube there can be.
+    /// Every node holds two dyes of its own choice in a thin solution.
     Dyes,
+    /// Every node holds a film of any two dyes: the most expensive cube there can be.
+    Film,
     /// Every node holds bells of its own choice.
     Bells,
 }
@@ -58,7 +61,12 @@ pub(crate) enum Kind {
 pub(crate) fn cube(resolution: usize, kind: Kind) -> Cube {
     let model = match kind {
         Kind::Bells => Model::Analytic(AnalyticModel::default()),
-        _ => {
+        Kind::Film => {
+            let set = DyeSet::named("wide8").expect("built in");
+            let film = FilmModel::new(set, Accounting::Photon, QuantumYield::default());
+            Model::Film(film.expect("valid"))
+        }
+        Kind::Passive | Kind::Dyes => {
             let set = DyeSet::named("konig8").expect("built in");
             Model::Dyes(DyeModel::new(set, DyeOptions::default()).expect("valid"))
         }
@@ -78,6 +86,10 @@ pub(crate) fn cube(resolution: usize, kind: Kind) -> Cube {
                 weight: random.unit().into(),
                 concentration,
             },
+            Kind::Film => {
+                let mut dye = || (usize::from(random.byte() % 8), random.between(0.1, 3.0).into());
+                Fluorescence::film(dye(), dye())
+            }
             Kind::Bells => Fluorescence::Analytic {
                 emission_peak_nm: random.between(400.0, 710.0).into(),
                 stokes_shift_nm: random.between(10.0, 120.0).into(),
