@@ -1,5 +1,6 @@
 //! Reading cubes, and checking that no output replaces an input.
 
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use upglow::{Cube, CubeFileError};
@@ -23,13 +24,20 @@ pub(crate) fn bytes(path: &Path) -> Result<u64, Failure> {
     path.metadata().map(|found| found.len()).map_err(|error| Failure::system(path, &error, A_CUBE))
 }
 
+/// The input pictures by the paths that they really have.
+pub(crate) fn really(pictures: &[PathBuf]) -> HashMap<PathBuf, &PathBuf> {
+    let pairs = pictures.iter().filter_map(|path| Some((path.canonicalize().ok()?, path)));
+    pairs.collect()
+}
+
 /// Checks that an output can be written, and does not replace the cube or an input picture.
-pub(crate) fn check_output_of<'p>(
+pub(crate) fn check_output_of(
     output: &Path,
     cube: Option<&Path>,
-    pictures: impl IntoIterator<Item = &'p PathBuf>,
+    pictures: &HashMap<PathBuf, &PathBuf>,
 ) -> Result<(), Failure> {
-    if let Some(picture) = pictures.into_iter().find(|picture| is_same(picture, output)) {
+    let real = output.canonicalize().ok();
+    if let Some(picture) = real.and_then(|real| pictures.get(&real)) {
         let message = format!("the picture {} itself, expected another file", picture.display());
         return Err(Failure::file(output, message));
     }

@@ -1,5 +1,6 @@
 //! The pictures that a command reads, and the files that it writes for them.
 
+use std::collections::HashMap;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
@@ -97,10 +98,11 @@ pub(crate) fn outputs(
         };
     }
     let mut outputs: Vec<PathBuf> = Vec::new();
+    let mut taken: HashMap<PathBuf, &PathBuf> = HashMap::new();
     for input in inputs {
         let path = output.join(name_of(input, form));
-        if let Some(twin) = outputs.iter().position(|other| *other == path) {
-            let twin = inputs[twin].display();
+        if let Some(twin) = taken.insert(path.clone(), input) {
+            let twin = twin.display();
             return Err(Failure::file(
                 input,
                 format!("same name as {twin}, expected names that differ without their suffixes"),

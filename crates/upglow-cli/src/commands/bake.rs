@@ -112,11 +112,12 @@ fn check_outputs(args: &BakeArgs, inputs: &[PathBuf], outputs: &[PathBuf]) -> Re
                        files that this one writes";
         return Err(Failure::file(&args.output, message));
     }
+    let pictures = files::really(inputs);
     for output in outputs {
         if let Some(folder) = output.parent().filter(|folder| !folder.as_os_str().is_empty()) {
             files::make_folder(folder)?;
         }
-        files::check_output_of(output, Some(&args.cube), inputs)?;
+        files::check_output_of(output, Some(&args.cube), &pictures)?;
     }
     Ok(())
 }

@@ -74,8 +74,9 @@ fn check_outputs(args: &CheckArgs, inputs: &[PathBuf]) -> Result<(), Failure> {
         );
         return Err(Failure::option("--heat-map", message));
     }
+    let pictures = files::really(inputs);
     let mut outputs = args.output.iter().chain(&args.heat_map);
-    outputs.try_for_each(|output| files::check_output_of(output, args.cube.as_deref(), inputs))
+    outputs.try_for_each(|output| files::check_output_of(output, args.cube.as_deref(), &pictures))
 }
 
 /// The light and adaptation of the options or the cube. The RGB space is that of each picture.

@@ -23,7 +23,7 @@ const LAMP_FWHM_NM: f64 = 12.0;
 pub(crate) fn run(args: &ColorArgs, console: &Console) -> Result<(), Failure> {
     let rgb = plan::color(args)?;
     if let Some(plot) = &args.plot {
-        files::check_output_of(plot, Some(&args.file), [])?;
+        files::check_output_of(plot, Some(&args.file), &files::really(&[]))?;
     }
     let cube = files::read_cube(&args.file)?;
     let interpolation = (!args.direct).then(|| args.interpolation.unwrap_or_default());

@@ -34,7 +34,7 @@ struct ExportReport {
 
 pub(crate) fn run(args: &ExportArgs, console: &Console) -> Result<(), Failure> {
     let kind = kind(args)?;
-    files::check_output_of(&args.output, Some(&args.file), [])?;
+    files::check_output_of(&args.output, Some(&args.file), &files::really(&[]))?;
     let cube = files::read_cube(&args.file)?;
     let mut textures = Vec::new();
     let (bytes, nodes) = match kind {
@@ -72,7 +72,7 @@ fn shader(
     let paths: Vec<PathBuf> =
         shader.payload.iter().map(|file| args.output.with_file_name(&file.name)).collect();
     for path in &paths {
-        files::check_output_of(path, Some(&args.file), [])?;
+        files::check_output_of(path, Some(&args.file), &files::really(&[]))?;
     }
     for (path, file) in paths.iter().zip(&shader.payload) {
         files::write(path, &file.bytes)?;
