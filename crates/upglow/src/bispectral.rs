@@ -93,7 +93,8 @@ pub struct Sample<T> {
     /// The wavelength drawn, nm.
     pub nm: T,
     /// Factor of the path's throughput: reflectance or re-radiation divided by the probability or
-    /// density of the draw. It depends on the known wavelength only.
+    /// density of the draw. It depends on the known wavelength only, except for the incident wavelengths
+    /// of films: their densities are near to what returns, not equal to it.
     pub throughput: T,
     /// How the wavelength was drawn and how likely it was.
     pub draw: Draw<T>,
