@@ -29,7 +29,8 @@ pub struct UpglowSample {
     /// The wavelength drawn, nm; the known one if nothing was drawn.
     pub lambda_nm: f32,
     /// Factor for the path's throughput: the material's value divided by the probability or density
-    /// of the draw. It depends on the known wavelength alone; 0 if nothing was drawn.
+    /// of the draw. It depends on the known wavelength alone, except for
+    /// incident wavelengths of films; 0 if nothing was drawn.
     pub throughput: f32,
     /// Probability of keeping the wavelength, 0 to 1; 0 unless it was kept.
     pub probability: f32,
