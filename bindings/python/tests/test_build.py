@@ -172,7 +172,7 @@ def test_unmeasured_yields_are_a_warning() -> None:
         ({"model": upglow.Film(set="x")}, 'unknown dye set "x", expected konig8, open8, wide14, wide8 or'),
         (
             {"model": upglow.Film(normalize=True)},
-            "normalize with the set 'konig8', expected a folder or a list",
+            "normalize with the set 'wide8', expected a folder or a list",
         ),
         ({"model": upglow.Dyes(optical_density=0)}, "optical density 0, expected > 0"),
         ({"model": upglow.Dyes(set="x")}, 'unknown dye set "x", expected konig8, open8, wide14, wide8 or'),

@@ -104,14 +104,14 @@ class Film:
     Parameters
     ----------
     set, normalize
-        As in `Dyes`, in any order.
+        As in `Dyes`, in any order; the default is the set of the preset ``natural``.
     accounting
         What re-radiation conserves at a quantum yield of 1: ``energy`` or ``photon``.
     quantum_yield
         Share of the absorbed light that is re-emitted, 0 to 1, or ``"measured"``.
     """
 
-    set: str | os.PathLike[str] | Sequence[Dye] = "konig8"
+    set: str | os.PathLike[str] | Sequence[Dye] = "wide8"
     accounting: str = "photon"
     quantum_yield: float | str = 1.0
     normalize: bool = False
