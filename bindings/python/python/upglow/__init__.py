@@ -6,7 +6,7 @@ answers for arrays of colors: reflectance, re-radiation, color under any light, 
     >>> import upglow
     >>> cube = upglow.build(upglow.Contract(space="acescg"), resolution=9)
     >>> cube.reflectance([0.9, 0.1, 0.8], [450.0, 550.0, 650.0]).round(2).tolist()
-    [0.89, 0.06, 0.96]
+    [0.89, 0.06, 0.93]
     >>> cube.reradiation([0.9, 0.1, 0.8], 550.0, [560.0, 600.0, 640.0]).shape
     (3,)
 
