@@ -190,21 +190,21 @@ impl Fitter {
             }
             better(Some(alone), self.glowing(&job, around, passive))
         };
+        let (widest, gentler) = self.with_dyes.split_last().expect("there is at least one stage");
         // Beside misses a color is probably missed too; then the widest limits alone show it.
-        if !around.is_empty() && !around.iter().any(Fit::is_matched) {
-            let widest = within(self.with_dyes.last().expect("there is at least one stage"));
-            if !widest.is_matched() {
-                return widest;
-            }
+        let is_beside_misses = !around.is_empty() && !around.iter().any(Fit::is_matched);
+        let widest_first = is_beside_misses.then(|| within(widest));
+        if let Some(missed) = widest_first.filter(|fit| !fit.is_matched()) {
+            return missed;
         }
         let mut best = passive;
-        for stage in &self.with_dyes {
+        for stage in gentler {
             best = better(Some(best), within(stage));
             if best.is_matched() {
-                break;
+                return best;
             }
         }
-        best
+        better(Some(best), widest_first.unwrap_or_else(|| within(widest)))
     }
 
     /// The best material with dyes by the method of the options.

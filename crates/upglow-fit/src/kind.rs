@@ -68,6 +68,7 @@ struct BlendPart {
     /// The kind of the node if it matches its color.
     kind: MaterialKind,
     is_missed: bool,
+    /// The color; zero if no blend with a node that misses needs it.
     color: Xyz,
 }
 
@@ -141,10 +142,24 @@ impl<'c> BlendKinds<'c> {
         let part = |node: &Node| BlendPart {
             kind: MaterialKind::of_part(MaterialKind::slope_and_glow(node, cube), cube.fit()),
             is_missed: MaterialKind::of_node(node, cube) == MaterialKind::Missed,
-            color: sums.color(node.material(cube.model())),
+            color: Xyz::default(),
         };
-        let parts: Vec<BlendPart> = cube.nodes().par_iter().map(part).collect();
-        let cells = (0..parts.len()).map(|darkest| kind_of_cell(cube, &parts, darkest)).collect();
+        let mut parts: Vec<BlendPart> = cube.nodes().iter().map(part).collect();
+        let mut cells = vec![None; parts.len()];
+        let mut is_measured = vec![false; parts.len()];
+        for (darkest, cell) in cells.iter_mut().enumerate() {
+            let Some(nodes) = nodes_of_cell(cube, darkest) else { continue };
+            let kind = parts[darkest].kind;
+            if nodes.iter().any(|&node| parts[node].is_missed) {
+                nodes.iter().for_each(|&node| is_measured[node] = true);
+            } else if nodes.iter().all(|&node| parts[node].kind == kind) {
+                *cell = Some(kind);
+            }
+        }
+        let measured = parts.par_iter_mut().zip(cube.nodes()).zip(is_measured);
+        measured.filter(|(_, is_measured)| *is_measured).for_each(|((part, node), _)| {
+            part.color = sums.color(node.material(cube.model()));
+        });
         Self { cube, colorimetry, parts, cells }
     }
 
@@ -182,16 +197,12 @@ impl<'c> BlendKinds<'c> {
     }
 }
 
-/// The kind of all blends in a cell, if it has only one.
-fn kind_of_cell(cube: &Cube, parts: &[BlendPart], darkest: usize) -> Option<MaterialKind> {
+/// The eight nodes of the cell with this darkest node; `None` for nodes that are the darkest of no cell.
+fn nodes_of_cell(cube: &Cube, darkest: usize) -> Option<[usize; 8]> {
     let n = cube.resolution();
-    if cube.coordinates(darkest).contains(&(n - 1)) {
-        return None;
-    }
+    let is_darkest = !cube.coordinates(darkest).contains(&(n - 1));
     let node = |i: usize| darkest + (i / 4 * n + i / 2 % 2) * n + i % 2;
-    let mut nodes = (0..8).map(|i| &parts[node(i)]);
-    let kind = parts[darkest].kind;
-    nodes.all(|part| part.kind == kind && !part.is_missed).then_some(kind)
+    is_darkest.then(|| std::array::from_fn(node))
 }
 
 impl KindCounts {

@@ -46,8 +46,8 @@ pub(crate) fn run(args: &BakeArgs, console: &Console) -> Result<(), Failure> {
     let cube = files::read_cube(&args.cube)?;
     let baker = Baker::new(&cube, form, options).map_err(|error| refused(error, &args.cube))?;
     let mut batch = Batch::new("baked", &inputs);
-    let pairs = inputs.pictures.iter().zip(&outputs);
-    let ended = pairs.into_iter().try_for_each(|(input, output)| {
+    let mut pairs = inputs.pictures.iter().zip(&outputs);
+    let ended = pairs.try_for_each(|(input, output)| {
         if args.update && baker.is_made(input, output) {
             batch.add_unchanged(input);
             return Ok(());

@@ -69,23 +69,23 @@ impl<'f> Choice<'f> {
         }
         let shifts = |(fit, asked): (&Fit, &bool)| if *asked { self.shifts(fit) } else { NONE };
         let mut shifts: Vec<Shifts> = fits.par_iter().zip(&is_asked).map(shifts).collect();
-        // When each node changed last. Updates are counted; those before the first one changed all.
-        let mut changed_at = vec![1; fits.len()];
-        for (update, nodes) in (2..).zip(std::iter::repeat_n(&fields, ROUNDS).flatten()) {
-            let last = update - fields.len();
+        // Which nodes changed when they were asked last; those that are never asked do not change.
+        let mut moved = vec![false; fits.len()];
+        fields.iter().flatten().for_each(|&node| moved[node] = true);
+        for nodes in std::iter::repeat_n(&fields, ROUNDS).flatten() {
             let chosen = stage.each(nodes.len(), |k| {
                 let node = nodes[k];
                 let mut around = self.lattice.neighbors(node).chain([node]);
                 // If nothing changed since the node was asked last, it would answer the same.
                 around
-                    .any(|i| changed_at[i] >= last)
+                    .any(|i| moved[i])
                     .then(|| self.chosen(&fits, &shifts, node, MOST_DOSE * least[node]))
             })?;
             for (&node, chosen) in nodes.iter().zip(chosen) {
-                let Some((fit, shift)) = chosen.filter(|(fit, _)| *fit != fits[node]) else {
-                    continue;
-                };
-                (fits[node], shifts[node], changed_at[node]) = (fit, shift, update);
+                moved[node] = chosen.is_some_and(|(fit, _)| fit != fits[node]);
+                if let Some(chosen) = chosen {
+                    (fits[node], shifts[node]) = chosen;
+                }
             }
         }
         Ok(fits)

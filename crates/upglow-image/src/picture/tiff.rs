@@ -193,8 +193,7 @@ fn check_image(fields: &mut Fields) -> Result<(), PictureError> {
 
 impl Layout {
     fn of(fields: &mut Fields, method: Method) -> Result<(Self, LastSample), PictureError> {
-        let mut side = |tag| Ok::<_, PictureError>(usize_of(fields.integer(tag, 0)?));
-        let size = [side(tag::IMAGE_WIDTH)?, side(tag::IMAGE_LENGTH)?];
+        let size = [side(fields, tag::IMAGE_WIDTH)?, side(fields, tag::IMAGE_LENGTH)?];
         check_size(size)?;
         let per_pixel = usize_of(fields.integer(tag::SAMPLES_PER_PIXEL, 1)?);
         let number = number(fields, per_pixel)?;
@@ -220,23 +219,16 @@ impl Layout {
             together: per_pixel / planes,
         };
         let is_tiled = fields.has(tag::TILE_WIDTH);
-        let mut chunk = if is_tiled {
-            [tag::TILE_WIDTH, tag::TILE_LENGTH]
-                .map(|tag| Ok(usize_of(fields.integer(tag, 0)?)))
-                .into_iter()
-                .collect::<Result<Vec<_>, PictureError>>()?
+        let chunk = if is_tiled {
+            [side(fields, tag::TILE_WIDTH)?, side(fields, tag::TILE_LENGTH)?]
         } else {
-            let most = u64::from(u32::MAX);
-            vec![size[0], usize_of(fields.integer(tag::ROWS_PER_STRIP, most)?)]
+            let rows = fields.integer(tag::ROWS_PER_STRIP, u64::MAX)?;
+            [size[0], usize_of(rows).min(size[1])]
         };
         if chunk.contains(&0) {
             let found = format!("strips or tiles of {} by {} pixels", chunk[0], chunk[1]);
             return Err(damaged(found));
         }
-        if !is_tiled {
-            chunk[1] = chunk[1].min(size[1]);
-        }
-        let chunk = [chunk[0], chunk[1]];
         let row_bytes = [chunk[0] as u64, storage.together as u64, number.bits() as u64];
         let row_bytes = row_bytes.into_iter().fold(1, u64::saturating_mul) / 8;
         check_memory("a row of a strip or tile", row_bytes)?;
@@ -274,7 +266,7 @@ impl Layout {
         let counts = match fields.integers(counts)? {
             Some(counts) => counts,
             None if method == Method::Plain && expected == 1 => {
-                vec![(self.storage.row_bytes(self.chunk[0]) * self.chunk[1]) as u64]
+                vec![self.storage.row_bytes(self.chunk[0]).saturating_mul(self.chunk[1]) as u64]
             }
             None => Vec::new(),
         };
@@ -284,6 +276,11 @@ impl Layout {
         }
         Ok(offsets.into_iter().zip(counts).map(|(at, bytes)| [at, bytes]).collect())
     }
+}
+
+/// A width or height; 0 if the field is absent.
+fn side(fields: &mut Fields, tag: u16) -> Result<usize, PictureError> {
+    Ok(usize_of(fields.integer(tag, 0)?))
 }
 
 fn usize_of(value: u64) -> usize {

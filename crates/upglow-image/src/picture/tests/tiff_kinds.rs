@@ -295,3 +295,38 @@ fn damaged_deflate_data_is_refused_by_its_checksum() {
     }
     assert_eq!(refused, flips.count());
 }
+
+/// A `BigTIFF` with these fields of one number each.
+fn bigtiff_of(fields: &[(u16, u64)]) -> Vec<u8> {
+    let mut bytes = b"II\x2b\0\x08\0\0\0".to_vec();
+    bytes.extend([16, fields.len() as u64].iter().flat_map(|v| v.to_le_bytes()));
+    for (tag, value) in fields {
+        bytes.extend([*tag, 16].iter().flat_map(|v| v.to_le_bytes()));
+        bytes.extend([1, *value].iter().flat_map(|v| v.to_le_bytes()));
+    }
+    bytes.extend([0; 64]);
+    bytes
+}
+
+#[test]
+fn fields_of_the_greatest_numbers_are_refused() {
+    // Width, height, bits, photometric, tile width, tile height, offset: with each of them in turn at most.
+    let fields = [(256, 20), (257, 20), (258, 8), (262, 1), (322, 16), (323, 16), (324, 100)];
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("x.tif");
+    for (i, (tag, _)) in fields.iter().enumerate() {
+        for most in [u64::MAX, 1 << 63, 1 << 32] {
+            let mut fields = fields;
+            fields[i].1 = most;
+            std::fs::write(&path, bigtiff_of(&fields)).unwrap();
+            let found = Picture::open(&path);
+            assert!(found.is_err(), "{tag} {most}");
+        }
+    }
+    // One tile whose bytes are not counted: its rows times their bytes exceed every number.
+    let one_tile =
+        [(256, 16), (257, 16), (258, 8), (262, 1), (322, 16), (323, 1 << 63), (324, 100)];
+    std::fs::write(&path, bigtiff_of(&one_tile)).unwrap();
+    let found = Picture::open(&path).and_then(|mut picture| picture.read_band(1));
+    assert!(found.unwrap_err().to_string().starts_with("damaged: a strip or tile of"));
+}
