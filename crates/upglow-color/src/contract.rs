@@ -6,6 +6,7 @@ use crate::grid::Grid;
 use crate::illuminant::Illuminant;
 use crate::observer::Observer;
 use crate::rgb_space::RgbSpace;
+use crate::values::Xyz;
 
 /// What defines which color an RGB triple is. No part of it is guessed.
 ///
@@ -100,6 +101,41 @@ impl Contract {
     pub fn on(&self, grid: Grid) -> Colorimetry {
         Colorimetry::try_new(self, grid).unwrap_or_else(|error| panic!("{error}"))
     }
+
+    /// How a material of this contract looks under another light, by sums over `grid`.
+    ///
+    /// # Panics
+    ///
+    /// If [`Contract::check`] fails.
+    #[must_use]
+    pub fn seen_under(&self, light: &Illuminant, grid: Grid) -> SeenUnder {
+        let own = self.on(grid);
+        let relit = own.relit(&self.observer, light);
+        let contract = Self { illuminant: light.clone(), ..self.clone() };
+        match Colorimetry::try_new(&contract, grid) {
+            Ok(colorimetry) if relit.white().0[1] >= DARK => {
+                SeenUnder { white: colorimetry.white(), colorimetry, is_adapted: true }
+            }
+            _ => SeenUnder { white: own.white(), colorimetry: relit, is_adapted: false },
+        }
+    }
+}
+
+/// A light under which white is darker than this beside equally powerful light of the contract is no
+/// light to see by. Ultraviolet lamps are far below (365 nm: 6e-5), all lamps for rooms far above.
+const DARK: f64 = 0.01;
+
+/// How materials look under a light.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SeenUnder {
+    /// Weights of the light, and the matrices of the contract's RGB. If the observer is adapted to the
+    /// light, its white has Y = 1; otherwise it is [`Colorimetry::relit`].
+    pub colorimetry: Colorimetry,
+    /// What the observer sees as white: the perfect diffuser under the light, or under the contract's
+    /// own if nobody could adapt to a light that is nearly invisible.
+    pub white: Xyz,
+    /// Whether this is the white of the light itself.
+    pub is_adapted: bool,
 }
 
 #[cfg(test)]
@@ -112,6 +148,23 @@ mod tests {
         for name in Illuminant::NAMES {
             let illuminant = Illuminant::named(name).unwrap();
             assert_eq!(Contract { illuminant, ..Contract::default() }.check(), Ok(()), "{name}");
+        }
+    }
+
+    #[test]
+    fn the_observer_adapts_to_lights_of_rooms_and_not_to_ultraviolet_lamps() {
+        let contract = Contract::default();
+        let own = contract.on(Grid::FIT);
+        for name in Illuminant::NAMES {
+            let light = Illuminant::named(name).unwrap();
+            let seen = contract.seen_under(&light, Grid::FIT);
+            assert!(seen.is_adapted && seen.white.0[1] == seen.colorimetry.white().0[1], "{name}");
+        }
+        for (peak_nm, is_adapted) in [(365.0, false), (405.0, false), (589.0, true)] {
+            let light = Illuminant::line("lamp", peak_nm, 2.0).unwrap();
+            let seen = contract.seen_under(&light, Grid::FIT);
+            assert_eq!(seen.is_adapted, is_adapted, "{peak_nm} {:?}", seen.colorimetry.white());
+            assert_eq!(seen.white == own.white(), !is_adapted);
         }
     }
 

@@ -68,7 +68,7 @@ pub use choice::{Choice, UnknownChoice};
 pub use ciede2000::{ciede2000, ciede2000_residuals};
 pub use color_solid::{ColorSolid, Nearest};
 pub use colorimetry::Colorimetry;
-pub use contract::{Contract, ContractError};
+pub use contract::{Contract, ContractError, SeenUnder};
 pub use dyes::MeasuredDye;
 pub use grid::{Grid, GridError};
 pub use illuminant::{Illuminant, IlluminantError};

@@ -1,12 +1,16 @@
 //! Bakes pictures into files of materials, spectra or light.
 
 mod attributes;
+mod blends;
 mod compact;
 mod maker;
 mod material;
 pub(crate) mod material_picture;
+mod output;
+pub(crate) mod png;
 mod radiance;
 pub(crate) mod repair;
+mod screen;
 mod spectral;
 
 use std::fs::File;
@@ -20,10 +24,13 @@ use upglow_color::{Grid, Illuminant, LinearRgb};
 use upglow_fit::{FitOptionsError, KindCounts, StandingTable, Stopped, Watch};
 
 use self::compact::CompactMaker;
-use self::maker::Maker;
+use self::maker::{Filled, Maker};
 use self::material::MaterialMaker;
+use self::output::Output;
+use self::png::{PngBits, PngWriter};
 use self::radiance::RadianceMaker;
 use self::repair::{Repair, Repairer, greatest_value};
+use self::screen::ScreenMaker;
 use self::spectral::SpectralMaker;
 use crate::exr::header::Sample;
 use crate::exr::reader::ExrReader;
@@ -54,6 +61,17 @@ pub enum Form {
     Radiance {
         /// The light, which is scaled to the power of the contract's light.
         light: Illuminant,
+    },
+    /// Color under a light as PNG in sRGB, as an observer sees it who is adapted to the light; see
+    /// [`Contract::seen_under`](upglow_color::Contract::seen_under). Colors outside sRGB keep their
+    /// luminance and hue and become grayer; above the luminance of white they are white.
+    Screen {
+        /// The light.
+        light: Illuminant,
+        /// Bits of each sample.
+        bits: PngBits,
+        /// By how many powers of two the light is brighter than one whose white is the screen's.
+        exposure_stops: f64,
     },
 }
 
@@ -87,6 +105,8 @@ pub struct Baked {
     pub channels: usize,
     /// Texels that a repair changed.
     pub repaired: u64,
+    /// Texels of [`Form::Screen`] whose colors are outside sRGB.
+    pub beyond_screen: u64,
     /// Texels of each kind of material under the cube's own light: of the single material of a texel where
     /// the form has one, else of its blend. `None` for materials that are interpolated only, because their
     /// differences are not measured.
@@ -147,6 +167,8 @@ pub struct Baker<'c> {
     cube: &'c Cube,
     options: BakeOptions,
     maker: Box<dyn Maker + 'c>,
+    /// The bits of PNG files, if they are written instead of OpenEXR.
+    png: Option<PngBits>,
     /// Names of the channels in the order of the planes, without alpha, which comes last.
     channels: Vec<String>,
     /// A hash of the program's version, the cube, the form and the options.
@@ -170,6 +192,10 @@ impl<'c> Baker<'c> {
         made.update(format!("{} {form:?} {options:?}", env!("CARGO_PKG_VERSION")));
         made.update(Sha256::digest(cube.to_bytes()));
         let is_polished = form == Form::Material;
+        let png = match form {
+            Form::Screen { bits, .. } => Some(bits),
+            _ => None,
+        };
         let maker: Box<dyn Maker + 'c> = match form {
             Form::Material | Form::InterpolatedMaterial => {
                 Box::new(MaterialMaker::new(cube, is_polished, options.sample)?)
@@ -177,9 +203,12 @@ impl<'c> Baker<'c> {
             Form::Spectral { grid, compact: false } => Box::new(SpectralMaker::new(cube, grid)),
             Form::Spectral { grid, compact: true } => Box::new(CompactMaker::new(cube, grid)?),
             Form::Radiance { light } => Box::new(RadianceMaker::new(cube, light)),
+            Form::Screen { light, exposure_stops, .. } => {
+                Box::new(ScreenMaker::new(cube, &light, exposure_stops))
+            }
         };
         let channels = maker.channels();
-        Ok(Self { cube, options, maker, channels, made })
+        Ok(Self { cube, options, maker, png, channels, made })
     }
 
     /// Bakes the picture at `input` into a file at `output`, on all threads of the current rayon
@@ -207,35 +236,38 @@ impl<'c> Baker<'c> {
             (Some(repair), Some(table)) => Some(self.repairer(repair, table, input, watch)?),
             _ => None,
         };
-        let mut description = self.description(picture.picture());
         let made = self.made_from(input).map_err(PictureError::Io)?;
-        description.attributes.insert(attributes::MADE.into(), made.into());
-        let mut writer = ExrWriter::create(output, description)?;
-        let interpretation = picture.interpretation().clone();
-        let mut baked =
-            Baked { size, interpretation, channels: 0, repaired: 0, kinds: None, bytes: 0 };
+        let mut writer = self.create(output.as_ref(), picture.picture(), made)?;
+        let mut baked = Baked {
+            size,
+            interpretation: picture.interpretation().clone(),
+            channels: 0,
+            repaired: 0,
+            beyond_screen: 0,
+            kinds: None,
+            bytes: 0,
+        };
+        let mut all = Filled::default();
         picture.for_each_band(self.band_rows(size[0]), "baking", watch, |mut band| {
             match &repairer {
                 Some(repairer) => baked.repaired += repairer.repair(&mut band.rgb),
                 None => refuse_outside(&band)?,
             }
-            let (planes, kinds) = self.planes(&band);
-            if let Some(kinds) = kinds {
-                baked.kinds.get_or_insert_default().join(&kinds);
-            }
+            let (planes, filled) = self.planes(&band);
+            all = all.with(&filled);
             baked.channels = planes.len();
-            writer.write_band(&planes.iter().map(Vec::as_slice).collect::<Vec<_>>())?;
+            writer.write_band(&planes)?;
             Ok::<_, BakeError>(())
         })?;
         baked.bytes = writer.finish()?;
+        (baked.kinds, baked.beyond_screen) = (all.kinds, all.beyond_screen);
         Ok(baked)
     }
 
     /// Whether the file at `output` was baked from the picture at `input` with the same cube, form and
     /// options, by the same version of this library.
     pub fn is_made(&self, input: impl AsRef<Path>, output: impl AsRef<Path>) -> bool {
-        let Ok(reader) = ExrReader::open(output) else { return false };
-        let stated = reader.attributes().get(attributes::MADE).and_then(|made| made.as_text());
+        let stated = output::made(output.as_ref());
         stated.is_some_and(|stated| self.made_from(input.as_ref()).is_ok_and(|made| made == stated))
     }
 
@@ -279,17 +311,17 @@ impl<'c> Baker<'c> {
         Ok(Repairer { repair, greatest, table })
     }
 
-    /// The channels of a band, alpha last, and the kinds of its materials.
-    fn planes(&self, band: &Band) -> (Vec<Vec<f32>>, Option<KindCounts>) {
+    /// The channels of a band, alpha last, and facts about them.
+    fn planes(&self, band: &Band) -> (Vec<Vec<f32>>, Filled) {
         let count = self.channels.len();
-        let rows: Vec<(Vec<f32>, Option<KindCounts>)> = band
+        let rows: Vec<(Vec<f32>, Filled)> = band
             .rgb
             .par_chunks(band.width)
             .map(|rgb| {
                 let mut values = vec![0.0; count * rgb.len()];
                 let mut planes: Vec<&mut [f32]> = values.chunks_mut(rgb.len()).collect();
-                let kinds = self.maker.fill(rgb, &mut planes);
-                (values, kinds)
+                let filled = self.maker.fill(rgb, &mut planes);
+                (values, filled)
             })
             .collect();
         let of_channel = |channel: usize| {
@@ -305,11 +337,20 @@ impl<'c> Baker<'c> {
             }
             planes.push(values.clone());
         }
-        let kinds = rows.iter().filter_map(|(_, kinds)| *kinds).reduce(|mut all, kinds| {
-            all.join(&kinds);
-            all
-        });
-        (planes, kinds)
+        let all = rows.iter().fold(Filled::default(), |all, (_, filled)| all.with(filled));
+        (planes, all)
+    }
+
+    /// Starts the file of a picture.
+    fn create(&self, path: &Path, picture: &Picture, made: String) -> Result<Output, BakeError> {
+        Ok(if let Some(bits) = self.png {
+            let png = PngWriter::create(path, picture.size(), picture.has_alpha(), bits, made);
+            Output::Png(png.map_err(WriteExrError::Io)?)
+        } else {
+            let mut description = self.description(picture);
+            description.attributes.insert(attributes::MADE.into(), made.into());
+            Output::Exr(ExrWriter::create(path, description)?)
+        })
     }
 
     fn description(&self, picture: &Picture) -> ExrDescription {

@@ -1,7 +1,7 @@
 //! Checks which materials a picture needs, before anything is baked.
 
 mod cube_match;
-mod display;
+pub(crate) mod display;
 mod findings;
 mod html;
 mod limits;

@@ -43,6 +43,7 @@ mod picture;
 mod spectral;
 
 pub use bake::material_picture::MaterialPicture;
+pub use bake::png::PngBits;
 pub use bake::repair::Repair;
 pub use bake::{BakeError, BakeOptions, Baked, Baker, Form};
 pub use check::{

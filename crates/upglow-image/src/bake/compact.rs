@@ -4,7 +4,7 @@ use upglow::{Cube, Interpolation, Mixing, Mixture, Model, Node};
 use upglow_color::{Grid, LinearRgb};
 use upglow_fit::{KindCounts, MaterialKind, Polisher};
 
-use super::maker::Maker;
+use super::maker::{Filled, Maker};
 use super::radiance::{NAMES, RadianceMaker};
 use super::{BakeError, attributes};
 use crate::exr::attribute::Attributes;
@@ -101,7 +101,7 @@ impl Maker for CompactMaker<'_> {
         }
     }
 
-    fn fill(&self, rgb: &[[f32; 3]], planes: &mut [&mut [f32]]) -> Option<KindCounts> {
+    fn fill(&self, rgb: &[[f32; 3]], planes: &mut [&mut [f32]]) -> Filled {
         let (preview, stored) = planes.split_at_mut(NAMES.len());
         self.preview.fill_rgb(rgb, preview);
         let mut texel = 0;
@@ -112,6 +112,6 @@ impl Maker for CompactMaker<'_> {
             }
             texel += 1;
         });
-        Some(kinds)
+        kinds.into()
     }
 }

@@ -32,7 +32,34 @@ pub(super) trait Maker: Debug + Sync {
         requested
     }
 
-    /// Fills one row of each channel, `[channel][texel]`. Returns the kinds of the row's materials, if
-    /// their differences from the colors are measured.
-    fn fill(&self, rgb: &[[f32; 3]], planes: &mut [&mut [f32]]) -> Option<KindCounts>;
+    /// Fills one row of each channel, `[channel][texel]`.
+    fn fill(&self, rgb: &[[f32; 3]], planes: &mut [&mut [f32]]) -> Filled;
+}
+
+/// Facts about texels whose channels were filled.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Filled {
+    /// The kinds of their materials, if their differences from the colors are measured.
+    pub(super) kinds: Option<KindCounts>,
+    /// How many colors are outside the colors of a screen.
+    pub(super) beyond_screen: u64,
+}
+
+impl Filled {
+    pub(super) fn with(self, other: &Self) -> Self {
+        let kinds = match (self.kinds, &other.kinds) {
+            (Some(mut all), Some(more)) => {
+                all.join(more);
+                Some(all)
+            }
+            (one, more) => one.or(*more),
+        };
+        Self { kinds, beyond_screen: self.beyond_screen + other.beyond_screen }
+    }
+}
+
+impl From<KindCounts> for Filled {
+    fn from(kinds: KindCounts) -> Self {
+        Self { kinds: Some(kinds), beyond_screen: 0 }
+    }
 }

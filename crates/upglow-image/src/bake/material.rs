@@ -5,7 +5,7 @@ use upglow::{Cube, Model, Node};
 use upglow_fit::{FitOptionsError, KindCounts, MaterialKind, Polisher};
 
 use super::attributes;
-use super::maker::Maker;
+use super::maker::{Filled, Maker};
 use crate::exr::attribute::Attributes;
 use crate::exr::header::Sample;
 
@@ -84,7 +84,7 @@ impl Maker for MaterialMaker<'_> {
         attributes
     }
 
-    fn fill(&self, rgb: &[[f32; 3]], planes: &mut [&mut [f32]]) -> Option<KindCounts> {
+    fn fill(&self, rgb: &[[f32; 3]], planes: &mut [&mut [f32]]) -> Filled {
         let mut nodes = vec![Node::default(); rgb.len()];
         let made = if self.is_polished {
             self.polisher.polish(rgb, &mut nodes)
@@ -99,8 +99,11 @@ impl Maker for MaterialMaker<'_> {
                 plane[texel] = value;
             }
         }
-        let kinds = || nodes.iter().map(|node| MaterialKind::of_node(node, self.cube)).collect();
-        self.is_polished.then(kinds)
+        if !self.is_polished {
+            return Filled::default();
+        }
+        let kinds = nodes.iter().map(|node| MaterialKind::of_node(node, self.cube));
+        kinds.collect::<KindCounts>().into()
     }
 }
 

@@ -1,12 +1,13 @@
 //! Colors under a light.
 
-use upglow::{ColorTable, Cube};
+use upglow::Cube;
 use upglow_color::rounding::to_single;
-use upglow_color::{Grid, Illuminant, LinearRgb, Matrix3};
-use upglow_fit::{BlendKinds, KindCounts};
+use upglow_color::{Grid, Illuminant, Matrix3};
+use upglow_fit::KindCounts;
 
 use super::attributes;
-use super::maker::Maker;
+use super::blends::Blends;
+use super::maker::{Filled, Maker};
 use crate::exr::attribute::{Attribute, Attributes};
 
 /// For each texel the linear RGB of its blend under a light, in the cube's space.
@@ -14,8 +15,7 @@ use crate::exr::attribute::{Attribute, Attributes};
 pub(super) struct RadianceMaker<'c> {
     cube: &'c Cube,
     light: Illuminant,
-    table: ColorTable,
-    kinds: BlendKinds<'c>,
+    blends: Blends<'c>,
     rgb_from_xyz: Matrix3,
     white: [f64; 3],
 }
@@ -26,8 +26,7 @@ impl<'c> RadianceMaker<'c> {
         let colorimetry = contract.on(Grid::FIT).relit(&contract.observer, &light);
         Self {
             cube,
-            table: cube.color_table(&colorimetry),
-            kinds: BlendKinds::new(cube),
+            blends: Blends::new(cube, &colorimetry),
             rgb_from_xyz: colorimetry.rgb_from_xyz_matrix(),
             white: colorimetry.rgb_from_xyz(colorimetry.white()).0,
             light,
@@ -36,18 +35,15 @@ impl<'c> RadianceMaker<'c> {
 
     /// Red, green, blue of each texel's blend.
     pub(super) fn fill_rgb(&self, rgb: &[[f32; 3]], planes: &mut [&mut [f32]]) {
-        let mut colors = vec![[0.0; 3]; rgb.len()];
-        self.table.xyz(rgb, &mut colors).expect("as many colors as texels");
-        for (i, xyz) in colors.into_iter().enumerate() {
-            let color = self.rgb_from_xyz * xyz.map(f64::from);
+        for (i, xyz) in self.blends.xyz(rgb).into_iter().enumerate() {
+            let color = self.rgb_from_xyz * xyz.0;
             (0..3).for_each(|k| planes[k][i] = to_single(color[k]));
         }
     }
 
     /// The kinds of the texels' blends.
     pub(super) fn kinds(&self, rgb: &[[f32; 3]]) -> KindCounts {
-        let kind = |rgb: &[f32; 3]| self.kinds.of(LinearRgb(rgb.map(f64::from)));
-        rgb.iter().map(|rgb| kind(rgb).expect("texels outside were repaired or refused")).collect()
+        self.blends.kinds(rgb)
     }
 }
 
@@ -76,8 +72,8 @@ impl Maker for RadianceMaker<'_> {
         true
     }
 
-    fn fill(&self, rgb: &[[f32; 3]], planes: &mut [&mut [f32]]) -> Option<KindCounts> {
+    fn fill(&self, rgb: &[[f32; 3]], planes: &mut [&mut [f32]]) -> Filled {
         self.fill_rgb(rgb, planes);
-        Some(self.kinds(rgb))
+        self.kinds(rgb).into()
     }
 }

@@ -3,10 +3,9 @@
 use upglow::{Bispectral, Cube, Interpolation, Model};
 use upglow_color::rounding::to_single;
 use upglow_color::{Grid, LinearRgb};
-use upglow_fit::KindCounts;
 
 use super::attributes;
-use super::maker::Maker;
+use super::maker::{Filled, Maker};
 use super::radiance::{NAMES, RadianceMaker};
 use crate::exr::attribute::Attributes;
 use crate::exr::writer::Compression;
@@ -66,7 +65,7 @@ impl Maker for SpectralMaker<'_> {
         Compression::Zips
     }
 
-    fn fill(&self, rgb: &[[f32; 3]], planes: &mut [&mut [f32]]) -> Option<KindCounts> {
+    fn fill(&self, rgb: &[[f32; 3]], planes: &mut [&mut [f32]]) -> Filled {
         let (preview, spectral) = planes.split_at_mut(NAMES.len());
         self.preview.fill_rgb(rgb, preview);
         let (bands, moved) = spectral.split_at_mut(self.grid.len());
@@ -89,6 +88,6 @@ impl Maker for SpectralMaker<'_> {
                 }
             }
         }
-        Some(self.preview.kinds(rgb))
+        self.preview.kinds(rgb).into()
     }
 }

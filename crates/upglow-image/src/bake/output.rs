@@ -1,0 +1,41 @@
+//! Baked files that are being written.
+
+use std::path::Path;
+
+use super::attributes;
+use super::png::{self, PngWriter};
+use crate::exr::reader::ExrReader;
+use crate::exr::writer::{ExrWriter, WriteExrError};
+
+/// A file that takes a picture by bands of rows and appears when it is complete.
+#[derive(Debug)]
+pub(super) enum Output {
+    Exr(ExrWriter),
+    Png(PngWriter),
+}
+
+impl Output {
+    /// Writes rows: a plane for each channel.
+    pub(super) fn write_band(&mut self, planes: &[Vec<f32>]) -> Result<(), WriteExrError> {
+        match self {
+            Self::Exr(writer) => {
+                writer.write_band(&planes.iter().map(Vec::as_slice).collect::<Vec<_>>())
+            }
+            Self::Png(writer) => Ok(writer.write_band(planes)?),
+        }
+    }
+
+    /// Completes the file; returns its size in bytes.
+    pub(super) fn finish(self) -> Result<u64, WriteExrError> {
+        match self {
+            Self::Exr(writer) => writer.finish(),
+            Self::Png(writer) => Ok(writer.finish()?),
+        }
+    }
+}
+
+/// What the file at `path` says it was made from.
+pub(super) fn made(path: &Path) -> Option<String> {
+    let Ok(reader) = ExrReader::open(path) else { return png::made(path) };
+    Some(reader.attributes().get(attributes::MADE)?.as_text()?.to_owned())
+}
