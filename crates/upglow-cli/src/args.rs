@@ -16,7 +16,9 @@ use upglow_terminal::{Console, Threads, count, in_range, word};
 pub(crate) use build::{
     BuildArgs, ContractArgs, FitArgs, ModelArgs, ModelName, SlopeLimits, limit_text,
 };
-pub(crate) use pictures::{BakeArgs, BakeForm, CheckArgs, ExamplesArgs, LintArgs, ReadArgs};
+pub(crate) use pictures::{
+    BakeArgs, BakeForm, BakeFormat, CheckArgs, ExamplesArgs, LintArgs, ReadArgs, SampleName,
+};
 pub(crate) use values::SlopeLimit;
 use values::{lights, rgb_space, slope_limit};
 
@@ -43,7 +45,7 @@ pub(crate) enum Command {
     Color(ColorArgs),
     /// Convert a cube for other programs: CSV, coefficient table or shader source
     Export(ExportArgs),
-    /// Convert EXR, TIFF or PNG pictures to EXR files of materials, spectra or colors under a light
+    /// Convert pictures to files of materials, spectra or colors under a light
     Bake(Box<BakeArgs>),
     /// Report which texels of pictures a reflectance can match, which need fluorescence, and which
     /// no material can match
@@ -125,6 +127,16 @@ pub(crate) struct ColorArgs {
     /// Fit a material to this color, with the options of the cube, instead of looking it up
     #[arg(long)]
     pub(crate) direct: bool,
+    #[arg(
+        long = "light",
+        value_name = "NAME|FILE",
+        help = format!(
+            "Also show its color under this light: {}; several may be given \
+             [default: D65, A, E and a 365 nm lamp]",
+            lights()
+        )
+    )]
+    pub(crate) lights: Vec<String>,
     /// Draw the curves of the material to this SVG file
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) plot: Option<PathBuf>,
@@ -136,7 +148,7 @@ pub(crate) struct ExportArgs {
     pub(crate) file: PathBuf,
     /// File to write
     pub(crate) output: PathBuf,
-    /// csv: one line per node; coeff: reflectances only, for Mitsuba 3, pbrt-v4 and colour-science;
+    /// csv: one line per node; coeff: reflectances only, for Mitsuba 3 and colour-science;
     /// the others: shader source, with its textures beside it [default: by the suffix of the
     /// output]
     #[arg(long, value_name = "NAME", value_parser = word::<ExportFormat>())]

@@ -6,7 +6,16 @@ use std::path::{Path, PathBuf};
 use upglow::{Cube, CubeFileError};
 use upglow_terminal::Failure;
 
-pub(crate) use upglow_terminal::files::{check_output, make_folder, read_text, write};
+pub(crate) use upglow_terminal::files::{
+    check_ending, check_output, make_folder, read_text, write,
+};
+
+/// The ending of cube files.
+pub(crate) const CUBE: &[&str] = &["safetensors"];
+/// The endings of pages.
+pub(crate) const PAGE: &[&str] = &["html", "htm"];
+pub(crate) const PNG: &[&str] = &["png"];
+pub(crate) const SVG: &[&str] = &["svg"];
 
 const A_CUBE: &str = "a cube made by `upglow build`";
 

@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 
 use upglow_terminal::Failure;
 
+use crate::files;
+
 /// Suffixes of the pictures in a folder.
 const SUFFIXES: [&str; 4] = ["exr", "tif", "tiff", "png"];
 
@@ -75,53 +77,75 @@ fn is_picture(path: &Path) -> bool {
     SUFFIXES.iter().any(|known| known.eq_ignore_ascii_case(suffix))
 }
 
-/// The output file of each input: the file `output` for a single picture, if `output` ends in `exr`
-/// and is not a folder; otherwise a file in the folder `output`, named after the picture and `form`,
-/// with the tile number of a UDIM in its place.
-pub(crate) fn outputs(
-    inputs: &[PathBuf],
-    output: &Path,
-    form: &str,
-) -> Result<Vec<PathBuf>, Failure> {
-    let is_exr = output.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("exr"));
-    if is_picture(output) && !output.is_dir() {
-        return match inputs.len() {
-            1 if is_exr => Ok(vec![output.to_owned()]),
-            1 => Err(Failure::file(
-                output,
-                "not an EXR file, expected a name that ends in .exr, or a folder",
-            )),
-            count => Err(Failure::file(
-                output,
-                format!("one file for {count} pictures, expected a folder"),
-            )),
-        };
-    }
-    let mut outputs: Vec<PathBuf> = Vec::new();
-    let mut taken: HashMap<PathBuf, &PathBuf> = HashMap::new();
-    for input in inputs {
-        let path = output.join(name_of(input, form));
-        if let Some(twin) = taken.insert(path.clone(), input) {
-            let twin = twin.display();
-            return Err(Failure::file(
-                input,
-                format!("same name as {twin}, expected names that differ without their suffixes"),
-            ));
+/// Where the files of a command go.
+#[derive(Clone, Debug)]
+pub(crate) struct Outputs<'a> {
+    /// A file for a single picture, or a folder.
+    pub(crate) path: &'a Path,
+    /// What the files hold, for their names in a folder.
+    pub(crate) form: &'a str,
+    /// The ending of the files.
+    pub(crate) ending: &'a str,
+    /// What tells the files of one picture apart, in their names; empty for one file of each picture.
+    pub(crate) variants: &'a [String],
+}
+
+impl Outputs<'_> {
+    /// The files of each input: for a single picture `path`, if it ends in a suffix of pictures and is
+    /// not a folder; otherwise files in the folder `path`, named after the picture and the form, with
+    /// the tile number of a UDIM in its place.
+    pub(crate) fn of(&self, inputs: &[PathBuf]) -> Result<Vec<Vec<PathBuf>>, Failure> {
+        if is_picture(self.path) && !self.path.is_dir() {
+            return match inputs.len() {
+                1 => {
+                    files::check_ending(self.path, &[self.ending])?;
+                    Ok(vec![self.variants_of(self.path)])
+                }
+                count => Err(Failure::file(
+                    self.path,
+                    format!("one file for {count} pictures, expected a folder"),
+                )),
+            };
         }
-        outputs.push(path);
+        let mut outputs = Vec::new();
+        let mut taken: HashMap<PathBuf, &PathBuf> = HashMap::new();
+        for input in inputs {
+            let files = self.variants_of(&self.path.join(name_of(input, self.form, self.ending)));
+            for path in &files {
+                if let Some(twin) = taken.insert(path.clone(), input) {
+                    let twin = twin.display();
+                    let message = format!(
+                        "same name as {twin}, expected names that differ without their suffixes"
+                    );
+                    return Err(Failure::file(input, message));
+                }
+            }
+            outputs.push(files);
+        }
+        Ok(outputs)
     }
-    Ok(outputs)
+
+    /// `wall.png` becomes `wall.A.png` and `wall.D65.png`.
+    fn variants_of(&self, path: &Path) -> Vec<PathBuf> {
+        if self.variants.is_empty() {
+            return vec![path.to_owned()];
+        }
+        self.variants
+            .iter()
+            .map(|word| path.with_file_name(name_of(path, word, self.ending)))
+            .collect()
+    }
 }
 
 /// `wall.1001.exr` becomes `wall.material.1001.exr`, which other programs still recognize as a tile.
-fn name_of(input: &Path, form: &str) -> PathBuf {
+fn name_of(input: &Path, word: &str, ending: &str) -> PathBuf {
     let stem = input.file_stem().unwrap_or_default().to_string_lossy();
     match stem.rsplit_once(['.', '_']) {
         Some((name, tile)) if is_udim(tile) => {
             let separator = &stem[name.len()..=name.len()];
-            format!("{name}.{form}{separator}{tile}.exr").into()
+            format!("{name}.{word}{separator}{tile}.{ending}").into()
         }
-        _ => format!("{stem}.{form}.exr").into(),
+        _ => format!("{stem}.{word}.{ending}").into(),
     }
 }
 
@@ -136,7 +160,7 @@ mod tests {
 
     #[test]
     fn names_keep_their_tile() {
-        let name = |input: &str| name_of(Path::new(input), "material").display().to_string();
+        let name = |input: &str| name_of(Path::new(input), "material", "exr").display().to_string();
         assert_eq!(name("a/wall.png"), "wall.material.exr");
         assert_eq!(name("wall.1001.exr"), "wall.material.1001.exr");
         assert_eq!(name("wall_1002.tif"), "wall.material_1002.exr");
@@ -147,14 +171,34 @@ mod tests {
     fn one_picture_may_have_an_output_file_and_two_need_a_folder() {
         let one = [PathBuf::from("a.png")];
         let two = [PathBuf::from("a.png"), PathBuf::from("b.png")];
-        let out = Path::new("out.exr");
-        assert_eq!(outputs(&one, out, "material"), Ok(vec![PathBuf::from("out.exr")]));
-        assert!(outputs(&two, out, "material").is_err());
-        assert!(outputs(&one, Path::new("out.png"), "material").is_err());
-        let names = outputs(&two, Path::new("out"), "radiance").unwrap();
-        assert_eq!(names[1], PathBuf::from("out/b.radiance.exr"));
+        let to = |path, form, inputs: &[PathBuf]| {
+            Outputs { path: Path::new(path), form, ending: "exr", variants: &[] }.of(inputs)
+        };
+        assert_eq!(to("out.exr", "material", &one), Ok(vec![vec![PathBuf::from("out.exr")]]));
+        assert!(to("out.exr", "material", &two).is_err());
+        assert!(to("out.png", "material", &one).is_err());
+        let names = to("out", "radiance", &two).unwrap();
+        assert_eq!(names[1], [PathBuf::from("out/b.radiance.exr")]);
         let twins = [PathBuf::from("x/a.png"), PathBuf::from("y/a.tif")];
-        assert!(outputs(&twins, Path::new("out"), "radiance").is_err());
+        assert!(to("out", "radiance", &twins).is_err());
+    }
+
+    #[test]
+    fn files_of_several_lights_are_named_after_them() {
+        let lights = ["A".to_owned(), "D65".to_owned()];
+        let names = |path, input: &str| {
+            let outputs = Outputs {
+                path: Path::new(path),
+                form: "radiance",
+                ending: "png",
+                variants: &lights,
+            };
+            let files = outputs.of(&[input.into()]).unwrap().concat();
+            files.iter().map(|path| path.display().to_string()).collect::<Vec<_>>()
+        };
+        assert_eq!(names("x.png", "a.exr"), ["x.A.png", "x.D65.png"]);
+        let tiles = ["out/a.radiance.A.1001.png", "out/a.radiance.D65.1001.png"];
+        assert_eq!(names("out", "a.1001.exr"), tiles);
     }
 
     #[test]

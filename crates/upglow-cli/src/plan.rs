@@ -29,6 +29,7 @@ impl BuildPlan {
         let model = model(args)?;
         let options = options(args.model.preset, &args.fit);
         options.check(&model).map_err(|error| options_failure(error, &options))?;
+        files::check_ending(&args.output, files::CUBE)?;
         files::check_output(&args.output)?;
         Ok(Self { contract, model, options })
     }

@@ -183,6 +183,26 @@ fn radiance_under_the_cubes_own_light_is_the_picture() {
 }
 
 #[test]
+fn several_lights_give_a_picture_each() {
+    let folder = desk();
+    let lights = "--as radiance --light D65 --light A";
+    let told = folder.json(&format!("bake cube tile.exr -o x.png {lights}"));
+    let files: Vec<&str> =
+        told["pictures"].as_array().unwrap().iter().filter_map(|p| p["file"].as_str()).collect();
+    assert_eq!(files, ["x.D65.png", "x.A.png"]);
+    assert_eq!(told["pictures"][1]["light"], "A");
+    // A screen's picture can be checked as any other, and says its encoding itself.
+    let found = folder.picture("check x.A.png");
+    assert_eq!((&found["rgb_space"], &found["above_one"]), (&"srgb".into(), &0.into()));
+    folder.done(&format!("bake cube tile.exr -o out --format png --bits 16 {lights}"));
+    let again =
+        folder.json(&format!("bake cube tile.exr -o out --format png --bits 16 --update {lights}"));
+    assert_eq!(again["unchanged"].as_array().unwrap().len(), 2);
+    let line = folder.refused(2, "bake cube tile.exr -o x.exr --as radiance --light D65 --bits 8");
+    assert_eq!(line, "--bits: given with --format exr, expected --format png");
+}
+
+#[test]
 fn folders_and_udim_tiles_keep_their_names() {
     let folder = desk();
     for name in ["set/wall.1001.exr", "set/wall.1002.exr", "set/floor_1001.exr", "set/door.exr"] {
@@ -271,7 +291,7 @@ fn pictures_that_are_refused() {
         ("check tile.exr --cube cube -o cube", "cube: the cube itself, expected another file"),
         (
             "bake cube tile.exr -o tile.png",
-            "tile.png: not an EXR file, expected a name that ends in .exr",
+            "tile.png: a name that ends in .png, expected one that ends in .exr",
         ),
         ("read tile.exr --at 0,0", "tile.exr: no spectral channel, expected names as T.550"),
     ];
@@ -337,6 +357,14 @@ fn options_that_do_not_fit() {
             "--bands: 200:700:10, expected bands within 300 to 830 nm",
         ),
         ("bake cube tile.exr -o x.exr --as spectral --bands 400:705:10", "--bands: "),
+        (
+            "bake cube tile.exr -o x.png --format png",
+            "--format png: given with --as material, expected --as radiance",
+        ),
+        (
+            "bake cube tile.exr -o x.png --as radiance --light A --exposure 21",
+            "--exposure: 21, expected a number from -20 to 20",
+        ),
         (
             "bake passive tile.exr -o x.exr --as spectral --compact",
             "--compact: a cube with the model reflectance, expected dyes",

@@ -290,6 +290,23 @@ fn outputs_that_cannot_be_written_are_refused_before_the_work() {
 }
 
 #[test]
+fn outputs_are_named_as_what_they_are() {
+    let folder = folder_with_cube();
+    let expected = |ending: &str| {
+        format!("x.pdf: a name that ends in .pdf, expected one that ends in .{ending}")
+    };
+    for (words, ending) in [
+        ("build --resolution 256 -o x.pdf", "safetensors"),
+        ("color cube 0 0 0 --plot x.pdf", "svg"),
+        ("export cube x.pdf --format csv", "csv"),
+        ("check cube -o x.pdf", "html or .htm"),
+        ("check cube --heat-map x.pdf", "png"),
+    ] {
+        assert_eq!(folder.refused(1, words), expected(ending), "{words}");
+    }
+}
+
+#[test]
 fn a_cube_is_not_replaced_by_what_is_made_of_it() {
     let folder = folder_with_cube();
     let before = folder.read("cube");
@@ -325,16 +342,21 @@ fn in_shell(folder: &Folder, preparation: &str, words: &str) -> (i32, String) {
 #[test]
 fn a_file_that_does_not_fit_leaves_the_old_one() {
     let folder = folder_with_cube();
-    folder.write("nodes.csv", "old");
+    folder.write("old.safetensors", "old");
+    folder.write("old.csv", "old");
     let names = folder.names();
     // No file may be larger than 4 kB; the signal that would end the program is ignored.
     let limit = "trap '' XFSZ; ulimit -f 8;";
-    for words in ["build --resolution 4 -o nodes.csv", "export cube nodes.csv"] {
+    for (words, name) in [
+        ("build --resolution 4 -o old.safetensors", "old.safetensors"),
+        ("export cube old.csv", "old.csv"),
+    ] {
         let (status, stderr) = in_shell(&folder, limit, words);
         let line = one_line(&stderr);
         assert_eq!(status, 1, "{line}");
-        assert!(line.starts_with("nodes.csv: file too large, expected room for "), "{line}");
-        assert_eq!((folder.names(), folder.read("nodes.csv")), (names.clone(), b"old".to_vec()));
+        let expected = format!("{name}: file too large, expected room for ");
+        assert!(line.starts_with(&expected), "{line}");
+        assert_eq!((folder.names(), folder.read(name)), (names.clone(), b"old".to_vec()));
     }
 }
 

@@ -76,6 +76,14 @@ pub enum Form {
 }
 
 impl Form {
+    /// The light under which colors are computed, of the forms that have one.
+    pub fn light(&self) -> Option<&Illuminant> {
+        match self {
+            Self::Radiance { light } | Self::Screen { light, .. } => Some(light),
+            _ => None,
+        }
+    }
+
     /// The form that a baked file states: material, spectral or radiance.
     pub fn stated(reader: &ExrReader) -> Option<&str> {
         reader.attributes().get(attributes::FORM)?.as_text()

@@ -13,14 +13,15 @@ use upglow::{
 };
 use upglow_color::{
     Colorimetry, Contract, Grid, Illuminant, LinearRgb, RgbSpace, Xyz, ciede2000, lab_from_xyz,
+    srgb_encoded,
 };
 use upglow_fit::{
     BlendKinds, CubeSummary, KindCounts, MaterialKind, Polisher, Preset, Unwatched, build_cube,
 };
 use upglow_image::{
     BakeError, BakeOptions, Baked, Baker, Declared, Encoding, ExamplePicture, ExrDescription,
-    ExrReader, ExrWriter, Form, Lint, MaterialPicture, Repair, Sample, SpectralPicture,
-    SpectralTexel,
+    ExrReader, ExrWriter, Form, Lint, MaterialPicture, Picture, PngBits, Repair, Sample,
+    SpectralPicture, SpectralTexel,
 };
 
 const POLISHED: Form = Form::Material;
@@ -303,6 +304,51 @@ fn the_kinds_of_materials_are_counted_in_every_form() {
     assert_eq!(kinds(Form::InterpolatedMaterial), None);
     let some_of_each = [blends, polished].map(|kinds| kinds.dyed > 0 && kinds.missed > 0);
     assert_eq!(some_of_each, [true; 2]);
+}
+
+/// Under D65 from a cube in sRGB a color is its own picture: the screen has the same white and primaries.
+#[test]
+fn a_picture_for_the_screen_has_the_colors_of_its_texels() {
+    let contract = Contract { space: RgbSpace::named("srgb").unwrap(), ..Contract::default() };
+    let cube =
+        build_cube(&contract, &Model::Reflectance, Preset::Jakob2019.options(), 9, &Unwatched);
+    let cube = cube.unwrap();
+    let (desk, rgb) = (Desk::new(), random_colors(400));
+    let input = desk.path("in.exr");
+    let described = ExrDescription::new([20, 20], ["R", "G", "B", "A"])
+        .with_sample(Sample::Float)
+        .with_space(&contract.space);
+    let mut writer = ExrWriter::create(&input, described).unwrap();
+    let alpha: Vec<f32> = (0..400).map(|i| 1.0 - i as f32 / 400.0).collect();
+    let plane = |k: usize| rgb.iter().zip(&alpha).map(|(v, a)| v[k] * a).collect::<Vec<f32>>();
+    writer.write_band(&[&plane(0), &plane(1), &plane(2), &alpha]).unwrap();
+    writer.finish().unwrap();
+    let light = Illuminant::named("D65").unwrap();
+    for (bits, greatest) in [(PngBits::Eight, 255.0), (PngBits::Sixteen, 65535.0)] {
+        let form = Form::Screen { light: light.clone(), bits, exposure_stops: -1.0 };
+        let output = desk.path("out.png");
+        let baked = bake(&cube, form, options(Sample::Half), &input, &output).unwrap();
+        assert_eq!((baked.beyond_screen, baked.channels), (0, 4));
+        let mut picture = Picture::open(&output).unwrap();
+        assert_eq!(picture.encoding(), Some(Encoding::Srgb));
+        let band = picture.read_band(20).unwrap().unwrap();
+        let table = cube.color_table(&contract.on(Grid::FIT));
+        let mut xyz = vec![[0.0; 3]; 400];
+        table.xyz(&rgb, &mut xyz).unwrap();
+        for (i, xyz) in xyz.iter().enumerate() {
+            let shown = contract.on(Grid::FIT).rgb_from_xyz(Xyz(xyz.map(f64::from)));
+            for k in 0..3 {
+                let expected = srgb_encoded(shown.0[k].clamp(0.0, 1.0) / 2.0);
+                let found = f64::from(band.rgb[i][k]);
+                // Half a step of the file, and single precision.
+                assert!((found - expected).abs() < 0.5 / greatest + 1e-6, "{i} {found} {expected}");
+            }
+        }
+        let found = band.alpha.unwrap();
+        assert!(
+            found.iter().zip(&alpha).all(|(a, b)| f64::from((a - b).abs()) < 0.5 / greatest + 1e-6)
+        );
+    }
 }
 
 #[test]

@@ -36,6 +36,21 @@ pub fn check_output(path: &Path) -> Result<(), Failure> {
     })
 }
 
+/// Checks that the name of an output does not promise another kind of file: it ends in one of
+/// `endings`, or has no ending.
+pub fn check_ending(path: &Path, endings: &[&str]) -> Result<(), Failure> {
+    let Some(found) = path.extension() else { return Ok(()) };
+    if endings.iter().any(|ending| found.eq_ignore_ascii_case(ending)) {
+        return Ok(());
+    }
+    let message = format!(
+        "a name that ends in .{}, expected one that ends in .{}",
+        found.display(),
+        endings.join(" or .")
+    );
+    Err(Failure::file(path, message))
+}
+
 /// Writes a file, as a whole or not at all.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     Aside::write_whole(path, bytes).map_err(|error| match error.kind() {
@@ -60,6 +75,17 @@ fn folder_of(path: &Path) -> &Path {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_ending_that_lies_is_refused() {
+        let check = |name: &str| check_ending(Path::new(name), &["html", "htm"]);
+        for name in ["a.html", "a.HTM", "page", "a.b/page", "/dev/stdout"] {
+            assert_eq!(check(name), Ok(()), "{name}");
+        }
+        let line = "a.pdf: a name that ends in .pdf, expected one that ends in .html or .htm";
+        assert_eq!(check("a.pdf"), Err(Failure::Input(line.into())));
+        assert!(check("page.").is_err());
+    }
 
     #[test]
     fn checking_an_output_creates_no_file() {

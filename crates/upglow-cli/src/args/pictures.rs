@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use upglow_color::{Adaptation, Grid, choices};
-use upglow_image::{Declared, DeclaredAlpha, Encoding, Repair, Sample};
+use upglow_image::{Declared, DeclaredAlpha, Encoding, PngBits, Repair, Sample};
 use upglow_terminal::{Threads, word};
 
-use super::values::{PictureSpace, bands, lights, picture_space, position};
+use super::values::{PictureSpace, bands, lights, picture_space, position, stops};
 
 /// How to interpret pictures.
 #[derive(Clone, Debug, clap::Args)]
@@ -50,7 +50,8 @@ pub(crate) struct BakeArgs {
     /// Pictures, or folders of pictures: EXR, TIFF or PNG
     #[arg(required = true, value_name = "IN")]
     pub(crate) inputs: Vec<PathBuf>,
-    /// EXR file to write for one picture, or folder for several; created if it does not exist
+    /// File to write for one picture, EXR or also PNG with --as radiance, or folder for several;
+    /// created if it does not exist
     #[arg(long, short, value_name = "OUT")]
     pub(crate) output: PathBuf,
     /// Skip pictures whose output was made from the same picture, cube and options
@@ -89,14 +90,28 @@ pub(crate) struct ResultArgs {
     #[arg(long)]
     pub(crate) compact: bool,
     #[arg(
-        long,
+        long = "light",
         value_name = "NAME|FILE",
-        help = format!("Light under which colors are computed: {} (radiance only)", lights())
+        help = format!(
+            "Light under which colors are computed: {}; given several times, one file is written \
+             for each (radiance only)",
+            lights()
+        )
     )]
-    pub(crate) light: Option<String>,
-    /// Number format of the channels: 16-bit half or 32-bit float
-    #[arg(long, default_value_t = SampleName::Half, value_name = "NAME", value_parser = word::<SampleName>())]
-    pub(crate) sample: SampleName,
+    pub(crate) lights: Vec<String>,
+    /// exr holds linear colors in the RGB space of the cube; png holds what a screen shows, in sRGB,
+    /// adapted to the light (radiance only) [default: by the suffix of OUT, exr for folders]
+    #[arg(long, value_name = "NAME", value_parser = word::<BakeFormat>())]
+    pub(crate) format: Option<BakeFormat>,
+    /// Bits of each sample: 8 or 16 (png only) [default: 8]
+    #[arg(long, value_name = "N", value_parser = word::<PngBits>())]
+    pub(crate) bits: Option<PngBits>,
+    /// By how many stops the light is brighter, -20 to 20 (png only) [default: 0]
+    #[arg(long, value_name = "STOPS", value_parser = stops, allow_hyphen_values = true)]
+    pub(crate) exposure: Option<f64>,
+    /// Number format of the channels: 16-bit half or 32-bit float (exr only) [default: half]
+    #[arg(long, value_name = "NAME", value_parser = word::<SampleName>())]
+    pub(crate) sample: Option<SampleName>,
 }
 
 #[derive(Clone, Debug, clap::Args)]
@@ -165,6 +180,15 @@ pub(crate) enum BakeForm {
 }
 
 choices!(BakeForm, "form", Material = "material", Spectral = "spectral", Radiance = "radiance",);
+
+/// Formats of baked files; the word is also their suffix.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum BakeFormat {
+    Exr,
+    Png,
+}
+
+choices!(BakeFormat, "format", Exr = "exr", Png = "png");
 
 /// Number formats of channels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

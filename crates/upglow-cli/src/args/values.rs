@@ -64,6 +64,17 @@ pub(super) fn lights() -> String {
     format!("{names}, or a CSV file with the header `wavelength_nm,power`")
 }
 
+/// A factor of light as a power of two.
+pub(super) fn stops(text: &str) -> Result<f64, String> {
+    /// A million times as bright: more is a mistake.
+    const MOST: f64 = 20.0;
+    let expected = format!("a number from -{MOST} to {MOST}");
+    match parsed(text, &expected)? {
+        found if (-MOST..=MOST).contains(&found) => Ok(found),
+        found => Err(format!("{found}, expected {expected}")),
+    }
+}
+
 /// Wavelengths FIRST:LAST:STEP in nm, within the range of the built-in tables.
 pub(super) fn bands(text: &str) -> Result<Grid, String> {
     let numbers: Option<Vec<u32>> = text.split(':').map(|cell| cell.trim().parse().ok()).collect();

@@ -4,16 +4,17 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use serde::Serialize;
-use upglow_color::{Choice, Grid};
+use upglow_color::{Choice, Grid, Illuminant};
 use upglow_fit::KindCounts;
 use upglow_image::{
     BakeError, BakeOptions, Baker, DeclaredAlpha, Form, Interpretation, Missing, PictureError,
 };
 use upglow_terminal::{Console, Failure, Report};
 
-use crate::args::{BakeArgs, BakeForm};
+use crate::args::{BakeArgs, BakeForm, BakeFormat, SampleName};
 use crate::batch::Batch;
 use crate::output::Lines;
+use crate::pictures::Outputs;
 use crate::{files, pictures, plan};
 
 #[derive(Debug, Serialize)]
@@ -21,11 +22,15 @@ struct BakeReport {
     input: String,
     file: String,
     form: &'static str,
+    /// The light of the form radiance.
+    light: Option<String>,
     width: usize,
     height: usize,
     channels: usize,
     /// Texels that `--repair` changed.
     repaired: u64,
+    /// Texels of a PNG whose colors are outside sRGB, and are shown grayer.
+    beyond_screen: Option<u64>,
     /// Texels of each kind of material; `None` with `--fast`, which measures no material.
     kinds: Option<KindCounts>,
     bytes: u64,
@@ -34,44 +39,64 @@ struct BakeReport {
 }
 
 pub(crate) fn run(args: &BakeArgs, console: &Console) -> Result<(), Failure> {
-    let form = form(args)?;
+    let format = format(args);
+    let forms = forms(args, format)?;
     let options = BakeOptions {
         declared: args.picture.declared(),
         repair: args.repair,
-        sample: args.result.sample.into(),
+        sample: args.result.sample.unwrap_or(SampleName::Half).into(),
     };
     let inputs = pictures::find(&args.inputs)?;
-    let outputs = pictures::outputs(&inputs.pictures, &args.output, args.form.name())?;
-    check_outputs(args, &inputs.pictures, &outputs)?;
+    let lights: Vec<&str> = forms.iter().filter_map(Form::light).map(Illuminant::name).collect();
+    let variants: Vec<String> = if lights.len() > 1 {
+        lights.iter().map(|light| in_file_name(light)).collect()
+    } else {
+        Vec::new()
+    };
+    let outputs = Outputs {
+        path: &args.output,
+        form: args.form.name(),
+        ending: format.name(),
+        variants: &variants,
+    };
+    let outputs = outputs.of(&inputs.pictures)?;
+    check_outputs(args, &inputs.pictures, &outputs.concat())?;
     let cube = files::read_cube(&args.cube)?;
-    let baker = Baker::new(&cube, form, options).map_err(|error| refused(error, &args.cube))?;
+    let baker = |form: &Form| Baker::new(&cube, form.clone(), options.clone());
+    let bakers: Result<Vec<Baker<'_>>, BakeError> = forms.iter().map(baker).collect();
+    let bakers = bakers.map_err(|error| refused(error, &args.cube))?;
     let mut batch = Batch::new("baked", &inputs);
     let mut pairs = inputs.pictures.iter().zip(&outputs);
-    let ended = pairs.try_for_each(|(input, output)| {
-        if args.update && baker.is_made(input, output) {
-            batch.add_unchanged(input);
-            return Ok(());
+    let ended = pairs.try_for_each(|(input, outputs)| {
+        for (i, (baker, output)) in bakers.iter().zip(outputs).enumerate() {
+            if args.update && baker.is_made(input, output) {
+                batch.add_unchanged(input);
+                continue;
+            }
+            let start = Instant::now();
+            let baked = match console.work(args.threads, |bar| baker.bake(input, output, bar))? {
+                Ok(baked) => baked,
+                // Under another light the picture would fail alike.
+                Err(error) => return batch.add_failure(input, failure(error, input, output)),
+            };
+            let report = BakeReport {
+                input: input.display().to_string(),
+                file: output.display().to_string(),
+                form: args.form.name(),
+                light: lights.get(i).map(|&light| light.to_owned()),
+                width: baked.size[0],
+                height: baked.size[1],
+                channels: baked.channels,
+                repaired: baked.repaired,
+                beyond_screen: (format == BakeFormat::Png).then_some(baked.beyond_screen),
+                kinds: baked.kinds,
+                bytes: baked.bytes,
+                time_s: start.elapsed().as_secs_f64(),
+                interpretation: baked.interpretation,
+            };
+            batch.add(console, report)?;
         }
-        let start = Instant::now();
-        match console.work(args.threads, |bar| baker.bake(input, output, bar))? {
-            Ok(baked) => batch.add(
-                console,
-                BakeReport {
-                    input: input.display().to_string(),
-                    file: output.display().to_string(),
-                    form: args.form.name(),
-                    width: baked.size[0],
-                    height: baked.size[1],
-                    channels: baked.channels,
-                    repaired: baked.repaired,
-                    kinds: baked.kinds,
-                    bytes: baked.bytes,
-                    time_s: start.elapsed().as_secs_f64(),
-                    interpretation: baked.interpretation,
-                },
-            ),
-            Err(error) => batch.add_failure(input, failure(error, input, output)),
-        }
+        Ok(())
     });
     batch.finish(console, ended)
 }
@@ -79,30 +104,65 @@ pub(crate) fn run(args: &BakeArgs, console: &Console) -> Result<(), Failure> {
 /// The bands that most other programs use.
 const DEFAULT_BANDS: [u32; 3] = [380, 780, 10];
 
-fn form(args: &BakeArgs) -> Result<Form, Failure> {
+/// The format that was given, or that of the output's suffix.
+fn format(args: &BakeArgs) -> BakeFormat {
+    let suffix = args.output.extension().and_then(|suffix| suffix.to_str()).unwrap_or_default();
+    let of_suffix = || BakeFormat::named(&suffix.to_lowercase()).ok();
+    let is_file = !args.output.is_dir() && args.form == BakeForm::Radiance;
+    args.result.format.or_else(|| of_suffix().filter(|_| is_file)).unwrap_or(BakeFormat::Exr)
+}
+
+/// What is written for each picture: one form, or one for each light.
+fn forms(args: &BakeArgs, format: BakeFormat) -> Result<Vec<Form>, Failure> {
     use BakeForm::{Material, Radiance, Spectral};
     let result = &args.result;
-    let options: [(&str, bool, &[BakeForm]); 4] = [
+    let is_png = format == BakeFormat::Png;
+    let options: [(&str, bool, &[BakeForm]); 5] = [
         ("--fast", result.fast, &[Material]),
         ("--bands", result.bands.is_some(), &[Spectral]),
         ("--compact", result.compact, &[Spectral]),
-        ("--light", result.light.is_some(), &[Radiance]),
+        ("--light", !result.lights.is_empty(), &[Radiance]),
+        ("--format png", is_png, &[Radiance]),
     ];
     plan::refuse_ignored("--as", args.form, &options)?;
-    Ok(match (args.form, &result.light) {
-        (Material, _) if result.fast => Form::InterpolatedMaterial,
-        (Material, _) => Form::Material,
-        (Spectral, _) => {
+    let options: [(&str, bool, &[BakeFormat]); 3] = [
+        ("--bits", result.bits.is_some(), &[BakeFormat::Png]),
+        ("--exposure", result.exposure.is_some(), &[BakeFormat::Png]),
+        ("--sample", result.sample.is_some(), &[BakeFormat::Exr]),
+    ];
+    plan::refuse_ignored("--format", format, &options)?;
+    match args.form {
+        Material if result.fast => Ok(vec![Form::InterpolatedMaterial]),
+        Material => Ok(vec![Form::Material]),
+        Spectral => {
             let [first, last, step] = DEFAULT_BANDS;
             let default = || Grid::try_new(first, last, step).expect("whole steps");
-            Form::Spectral { grid: result.bands.unwrap_or_else(default), compact: result.compact }
+            let grid = result.bands.unwrap_or_else(default);
+            Ok(vec![Form::Spectral { grid, compact: result.compact }])
         }
-        (Radiance, Some(light)) => Form::Radiance { light: plan::light("--light", light)? },
-        (Radiance, None) => {
+        Radiance if result.lights.is_empty() => {
             let message = "not given, expected a light with --as radiance";
-            return Err(Failure::option("--light", message));
+            Err(Failure::option("--light", message))
         }
-    })
+        Radiance => {
+            let lights = result.lights.iter().map(|text| plan::light("--light", text));
+            let form = |light| match format {
+                BakeFormat::Exr => Form::Radiance { light },
+                BakeFormat::Png => Form::Screen {
+                    light,
+                    bits: result.bits.unwrap_or_default(),
+                    exposure_stops: result.exposure.unwrap_or_default(),
+                },
+            };
+            lights.map(|light| light.map(form)).collect()
+        }
+    }
+}
+
+/// The name of a light in the name of a file, without separators and signs with a meaning to shells.
+fn in_file_name(light: &str) -> String {
+    let plain = |c: char| if c.is_alphanumeric() || "-_".contains(c) { c } else { '_' };
+    light.chars().map(plain).collect()
 }
 
 /// Creates the folders of the outputs, and checks all outputs before the first is baked.
@@ -193,6 +253,12 @@ impl Report for BakeReport {
             lines.add("repaired", format_args!("{repaired} texels"));
         }
         lines.add("form", format_args!("{form}, {channels} channels"));
+        if let Some(light) = &self.light {
+            lines.add("light", light);
+        }
+        if let Some(beyond) = self.beyond_screen.filter(|beyond| *beyond > 0) {
+            lines.add("beyond sRGB", format_args!("{beyond} texels, shown grayer"));
+        }
         if let Some(kinds) = &self.kinds {
             lines.add_kinds(kinds);
         }

@@ -75,8 +75,12 @@ fn check_outputs(args: &CheckArgs, inputs: &[PathBuf]) -> Result<(), Failure> {
         return Err(Failure::option("--heat-map", message));
     }
     let pictures = files::really(inputs);
-    let mut outputs = args.output.iter().chain(&args.heat_map);
-    outputs.try_for_each(|output| files::check_output_of(output, args.cube.as_deref(), &pictures))
+    let page = args.output.iter().map(|path| (path, files::PAGE));
+    let mut outputs = page.chain(args.heat_map.iter().map(|path| (path, files::PNG)));
+    outputs.try_for_each(|(path, endings)| {
+        files::check_output_of(path, args.cube.as_deref(), &pictures)?;
+        files::check_ending(path, endings)
+    })
 }
 
 /// The light and adaptation of the options or the cube. The RGB space is that of each picture.

@@ -13,7 +13,18 @@ use crate::args::ColorArgs;
 use crate::plot::{Curves, Figure, Swatch, svg};
 use crate::{files, plan};
 
-/// The lights under which the material is shown, besides the cube's own.
+/// The lights under which the material is shown besides the cube's own: those that were given, or
+/// standard lights and an ultraviolet lamp.
+fn lights(args: &ColorArgs) -> Result<Vec<Illuminant>, Failure> {
+    if args.lights.is_empty() {
+        let lamp = Illuminant::line(&format!("{LAMP_PEAK_NM} nm lamp"), LAMP_PEAK_NM, LAMP_FWHM_NM);
+        let standard = LIGHTS.iter().filter_map(|name| Illuminant::named(name).ok());
+        return Ok(standard.chain(lamp.ok()).collect());
+    }
+    args.lights.iter().map(|text| plan::light("--light", text)).collect()
+}
+
+/// The standard lights.
 const LIGHTS: [&str; 3] = ["D65", "A", "E"];
 
 /// An ultraviolet lamp as used for minerals and banknotes: only fluorescence is visible under it.
@@ -23,15 +34,17 @@ const LAMP_FWHM_NM: f64 = 12.0;
 pub(crate) fn run(args: &ColorArgs, console: &Console) -> Result<(), Failure> {
     let rgb = plan::color(args)?;
     if let Some(plot) = &args.plot {
+        files::check_ending(plot, files::SVG)?;
         files::check_output_of(plot, Some(&args.file), &files::really(&[]))?;
     }
+    let lights = lights(args)?;
     let cube = files::read_cube(&args.file)?;
     let interpolation = (!args.direct).then(|| args.interpolation.unwrap_or_default());
     let mixture = match interpolation {
         Some(interpolation) => cube.lookup(rgb, interpolation).map_err(no_material)?,
         None => fitted(rgb, &cube, args)?,
     };
-    let shown = Shown::new(&cube, &mixture, rgb, interpolation);
+    let shown = Shown::new(&cube, &mixture, rgb, interpolation, lights);
     if let Some(path) = &args.plot {
         files::write(path, svg::draw(&shown.figure()).as_bytes())?;
     }
@@ -59,6 +72,7 @@ struct Shown<'a> {
     rgb: LinearRgb,
     /// `None` for a material that was fitted to this color.
     interpolation: Option<Interpolation>,
+    lights: Vec<Illuminant>,
     colorimetry: Colorimetry,
     target: Xyz,
     color: Xyz,
@@ -71,12 +85,13 @@ impl<'a> Shown<'a> {
         mixture: &'a Mixture<'a>,
         rgb: LinearRgb,
         interpolation: Option<Interpolation>,
+        lights: Vec<Illuminant>,
     ) -> Self {
         let colorimetry = cube.contract().on(Grid::FIT);
         let target = colorimetry.xyz_from_rgb(rgb);
         let color = mixture.color(&ModelOnGrid::new(cube.model(), &colorimetry));
         let curves = Curves::of(mixture, &colorimetry);
-        Self { cube, mixture, rgb, interpolation, target, color, curves, colorimetry }
+        Self { cube, mixture, rgb, interpolation, lights, target, color, curves, colorimetry }
     }
 
     fn de2000(&self, color: Xyz) -> f64 {
@@ -127,29 +142,21 @@ impl<'a> Shown<'a> {
         }
     }
 
-    /// The color of the material under the cube's own light, standard lights and an ultraviolet lamp.
+    /// The color of the material under the cube's own light and the others.
     fn lights(&self) -> Vec<LightReport> {
         let contract = self.cube.contract();
         let own = contract.illuminant.name();
-        let standard = LIGHTS.iter().filter(|&&name| name != own);
-        let standard = standard.filter_map(|name| Illuminant::named(name).ok());
-        let mut lights = vec![self.under(own, &self.colorimetry)];
-        lights.extend(standard.map(|illuminant| {
-            let name = illuminant.name().to_owned();
-            let contract = Contract { illuminant, ..contract.clone() };
-            self.under(&name, &contract.on(Grid::FIT))
+        let mut lights = vec![self.under(own, true, &self.colorimetry)];
+        lights.extend(self.lights.iter().filter(|light| light.name() != own).map(|light| {
+            let seen = contract.seen_under(light, Grid::FIT);
+            self.under(light.name(), seen.is_adapted, &seen.colorimetry)
         }));
-        let name = format!("{LAMP_PEAK_NM} nm lamp");
-        let lamp = Illuminant::line(&name, LAMP_PEAK_NM, LAMP_FWHM_NM).ok();
-        lights.extend(
-            lamp.map(|lamp| self.under(&name, &self.colorimetry.relit(&contract.observer, &lamp))),
-        );
         lights
     }
 
-    fn under(&self, name: &str, colorimetry: &Colorimetry) -> LightReport {
+    fn under(&self, name: &str, is_adapted: bool, colorimetry: &Colorimetry) -> LightReport {
         let xyz = self.mixture.color(&ModelOnGrid::new(self.cube.model(), colorimetry));
-        LightReport { name: name.into(), xyz, rgb: colorimetry.rgb_from_xyz(xyz) }
+        LightReport { name: name.into(), is_adapted, xyz, rgb: colorimetry.rgb_from_xyz(xyz) }
     }
 
     fn figure(&self) -> Figure<'_> {

@@ -83,6 +83,9 @@ enum FluorescenceReport<'a> {
 #[derive(Debug, Serialize)]
 pub(crate) struct LightReport {
     pub(crate) name: String,
+    /// Whether the observer is adapted to it, so that white has Y = 1; otherwise it has as much power as
+    /// the cube's light, and the observer is adapted to that.
+    pub(crate) is_adapted: bool,
     pub(crate) xyz: Xyz,
     pub(crate) rgb: LinearRgb,
 }
@@ -302,10 +305,18 @@ impl ColorReport<'_> {
             table.add([light.name.clone(), triple(light.xyz.0), triple(light.rgb.0)]);
         }
         let Self { rgb_space: space, illuminant: own, adaptation, .. } = self;
+        let text =
+            format!("{table}RGB is linear {space}, adaptation {adaptation}. White has Y = 1");
+        let dark = self.lights.iter().filter(|light| !light.is_adapted);
+        let dark: Vec<&str> = dark.map(|light| light.name.as_str()).collect();
+        if dark.is_empty() {
+            return text + " under each light.\n";
+        }
+        let (dark, have) = (dark.join(", "), if dark.len() == 1 { "has" } else { "have" });
         format!(
-            "{table}\
-             RGB is linear {space}, adaptation {adaptation}. White has Y = 1 under each light except the\n\
-             lamp, which has as much power as {own} and is seen by an observer adapted to {own}.\n"
+            "{text} under each light except\n\
+             {dark}, which {have} as much power as {own} and nearly no visible light: the observer\n\
+             is adapted to {own}.\n"
         )
     }
 }

@@ -34,6 +34,7 @@ struct ExportReport {
 
 pub(crate) fn run(args: &ExportArgs, console: &Console) -> Result<(), Failure> {
     let kind = kind(args)?;
+    files::check_ending(&args.output, &[kind.name()])?;
     files::check_output_of(&args.output, Some(&args.file), &files::really(&[]))?;
     let cube = files::read_cube(&args.file)?;
     let mut textures = Vec::new();
@@ -101,7 +102,7 @@ fn kind(args: &ExportArgs) -> Result<ExportFormat, Failure> {
     Ok(kind)
 }
 
-/// The resolution of the tables that Mitsuba 3 and pbrt-v4 include.
+/// The resolution of the tables that Mitsuba 3 includes.
 const TABLE_RESOLUTION: usize = 64;
 
 /// The slope limit of a coefficient table: the one that was given, or that of the paper behind such

@@ -6,7 +6,7 @@ use upglow_color::{Contract, Grid, LinearRgb};
 use crate::material::sigmoid::Sigmoid;
 
 /// Reflectances for the RGB colors of a unit cube, in the layout that `rgb2spec` defined and that
-/// Mitsuba 3, pbrt-v4 and colour-science read.
+/// Mitsuba 3 and colour-science read.
 ///
 /// Such a file names neither its RGB space nor its light, and holds neither fluorescence nor a slope
 /// limit between its nodes; a [`crate::Cube`] does. Use it for programs that read nothing else.

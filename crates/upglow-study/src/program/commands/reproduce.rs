@@ -20,6 +20,7 @@ struct ReproduceReport {
 
 pub(super) fn run(args: &ReproduceArgs, console: &Console) -> Result<(), Failure> {
     if let Some(path) = &args.output {
+        files::check_ending(path, &["md", "txt"])?;
         files::check_output(path)?;
     }
     let folder = args.bispectral.as_deref();
