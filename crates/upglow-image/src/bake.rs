@@ -3,6 +3,7 @@
 mod attributes;
 mod blends;
 mod compact;
+mod half_reflectance;
 mod maker;
 mod material;
 pub(crate) mod material_picture;

@@ -1,10 +1,10 @@
 //! The material form: the parameters of one material per texel.
 
-use half::f16;
 use upglow::{Cube, Model, Node};
 use upglow_fit::{FitOptionsError, KindCounts, MaterialKind, Polisher};
 
 use super::attributes;
+use super::half_reflectance::{ORIGIN_NM, in_half};
 use super::maker::{Filled, Maker};
 use crate::exr::attribute::Attributes;
 use crate::exr::header::Sample;
@@ -18,10 +18,6 @@ pub(super) struct MaterialMaker<'c> {
     is_polished: bool,
     sample: Sample,
 }
-
-/// Wavelengths are stored relative to this: half precision resolves an eighth of a nanometer within
-/// 256 nm of zero, and only half a nanometer at 600.
-const ORIGIN_NM: f32 = 550.0;
 
 /// Steepest point of the reflectance: its wavelength, level and slope; see [`upglow::Edge`].
 const REFLECTANCE: [&str; 3] =
@@ -109,13 +105,13 @@ impl Maker for MaterialMaker<'_> {
 
 /// A node's numbers in the order of the channels.
 fn stored(node: &Node, model: &Model, sample: Sample) -> [f32; MOST_CHANNELS] {
-    let [edge_nm, level, slope_per_nm] = node.reflectance;
     let [first, second, third] = node.fluorescence;
-    // Levels that would be infinite in half precision are white or black in any case.
-    let level = level.clamp(-f16::MAX.to_f32(), f16::MAX.to_f32());
-    let slope_per_nm = match sample {
-        Sample::Half => towards_zero(slope_per_nm),
-        _ => slope_per_nm,
+    let [edge, level, slope_per_nm] = match sample {
+        Sample::Half => in_half(node.edge()),
+        _ => {
+            let [edge_nm, level, slope_per_nm] = node.reflectance;
+            [edge_nm - ORIGIN_NM, level, slope_per_nm]
+        }
     };
     let dyes = node.dyes.map(f32::from);
     let [a, b, c, d] = match model {
@@ -125,19 +121,7 @@ fn stored(node: &Node, model: &Model, sample: Sample) -> [f32; MOST_CHANNELS] {
         Model::Film(_) => [dyes[0], dyes[1], first, second],
         Model::Analytic(_) => [first - ORIGIN_NM, second, third, 0.0],
     };
-    [edge_nm - ORIGIN_NM, level, slope_per_nm, a, b, c, d]
-}
-
-/// The nearest half-precision number of no greater magnitude: rounding must not raise a slope above
-/// its limit.
-fn towards_zero(value: f32) -> f32 {
-    let nearest = f16::from_f32(value);
-    let size = nearest.to_f32().abs();
-    if size <= value.abs() {
-        return nearest.to_f32();
-    }
-    // The bits of half-precision numbers are ordered by magnitude.
-    f16::from_bits(nearest.to_bits() - 1).to_f32()
+    [edge, level, slope_per_nm, a, b, c, d]
 }
 
 /// Channels of the model that has most.
@@ -164,19 +148,4 @@ pub(super) fn node_of(values: [f32; MOST_CHANNELS], model: &Model) -> Node {
 )]
 fn dye_index(value: f32) -> u8 {
     value as u8
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_slope_is_never_rounded_up() {
-        for slope in [0.01, -0.01, 0.0099, 1e-7, -0.2, 0.0] {
-            let stored = towards_zero(slope);
-            assert!(stored.abs() <= slope.abs(), "{stored} {slope}");
-            // A half has eleven digits, or steps of 6e-8.
-            assert!((stored - slope).abs() <= slope.abs() / 1024.0 + 6e-8, "{stored} {slope}");
-        }
-    }
 }

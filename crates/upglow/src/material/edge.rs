@@ -40,6 +40,20 @@ impl Edge {
         [p, 2.0 * s * flatness * flatness.sqrt(), 6.0 * s * s * p * flatness * flatness]
     }
 
+    /// The reflectance that has this one's value and slope at `lambda_nm`, and is steepest there.
+    ///
+    /// Its slope is nowhere greater than the greatest of this one. It nearly is this one where the
+    /// slope varies little.
+    #[must_use]
+    pub fn tangent(self, lambda_nm: f64) -> Self {
+        let d = lambda_nm - self.edge_nm;
+        let [constant, linear, quadratic] = self.parabola();
+        let level = constant + d * (linear + d * quadratic);
+        let flatness = 1.0 + level * level;
+        let slope_per_nm = 0.5 * (linear + 2.0 * d * quadratic) / (flatness * flatness.sqrt());
+        Self { edge_nm: lambda_nm, level, slope_per_nm }
+    }
+
     /// The coefficient form.
     pub fn to_sigmoid(self) -> Sigmoid {
         let [constant, linear, quadratic] = self.parabola();
@@ -108,6 +122,19 @@ mod tests {
             // Coefficients near 1e3 lose that many digits.
             prop_assert!((r.slope_per_nm(edge.edge_nm) - s).abs() < 1e-9 + 1e-7 * s.abs());
             prop_assert!((r.at(500.0) - edge.at(500.0)).abs() < 1e-9);
+        }
+
+        #[test]
+        fn the_tangent_has_value_and_slope_there_and_is_nowhere_steeper(
+            edge in any_edge(),
+            nm in 300.0..830.0,
+        ) {
+            let tangent = edge.tangent(nm);
+            prop_assert!((tangent.at(nm) - edge.at(nm)).abs() < 1e-12);
+            // Coefficients near 1e3 lose that many digits.
+            let slope = edge.to_sigmoid().slope_per_nm(nm);
+            prop_assert!((tangent.slope_per_nm - slope).abs() < 1e-9 + 1e-7 * slope.abs());
+            prop_assert!(tangent.slope_per_nm.abs() <= edge.slope_per_nm.abs() * (1.0 + 1e-9));
         }
 
         #[test]
