@@ -186,7 +186,9 @@ pub struct Baker<'c> {
 
 /// Most bytes of the channels of a band, which limits the rows of wide pictures with many channels.
 /// More would fill the memory of small machines, less would leave cores idle at the end of each band.
-const BAND_BYTES: usize = 96 << 20;
+const BAND_BYTES: usize = 20 << 20;
+/// Texels that are made together: a task for one core.
+const MADE_TOGETHER: usize = 1024;
 /// Most rows of a band: enough to keep all cores busy.
 const BAND_ROWS: usize = 64;
 
@@ -224,8 +226,8 @@ impl<'c> Baker<'c> {
     /// pool. The file is replaced only once it is complete, and its bytes do not depend on the number of
     /// threads.
     ///
-    /// Memory: that of [`Picture`], two bands of at most 96 MiB, and one block of 16 rows (one row in
-    /// spectral files).
+    /// Memory: that of [`Picture`], a band of at most 20 MiB in single precision and twice in that of the
+    /// file, and one block of 16 rows (one row in spectral files).
     ///
     /// # Errors
     ///
@@ -322,22 +324,18 @@ impl<'c> Baker<'c> {
 
     /// The channels of a band, alpha last, and facts about them.
     fn planes(&self, band: &Band) -> (Vec<Vec<f32>>, Filled) {
-        let count = self.channels.len();
-        let rows: Vec<(Vec<f32>, Filled)> = band
-            .rgb
-            .par_chunks(band.width)
-            .map(|rgb| {
-                let mut values = vec![0.0; count * rgb.len()];
-                let mut planes: Vec<&mut [f32]> = values.chunks_mut(rgb.len()).collect();
-                let filled = self.maker.fill(rgb, &mut planes);
-                (values, filled)
-            })
-            .collect();
-        let of_channel = |channel: usize| {
-            let range = channel * band.width..(channel + 1) * band.width;
-            rows.iter().flat_map(|(row, _)| &row[range.clone()]).copied().collect()
-        };
-        let mut planes: Vec<Vec<f32>> = (0..count).into_par_iter().map(of_channel).collect();
+        let mut planes = vec![vec![0.0; band.rgb.len()]; self.channels.len()];
+        let pieces = band.rgb.len().div_ceil(MADE_TOGETHER);
+        let mut parts: Vec<Vec<&mut [f32]>> = (0..pieces).map(|_| Vec::new()).collect();
+        for plane in &mut planes {
+            let of_plane = plane.chunks_mut(MADE_TOGETHER);
+            parts.iter_mut().zip(of_plane).for_each(|(part, piece)| part.push(piece));
+        }
+        let all = parts
+            .par_iter_mut()
+            .zip(band.rgb.par_chunks(MADE_TOGETHER))
+            .map(|(part, rgb)| self.maker.fill(rgb, part))
+            .reduce(Filled::default, |all, filled| all.with(&filled));
         if let Some(values) = &band.alpha {
             if self.maker.is_light() {
                 for plane in &mut planes {
@@ -346,7 +344,6 @@ impl<'c> Baker<'c> {
             }
             planes.push(values.clone());
         }
-        let all = rows.iter().fold(Filled::default(), |all, (_, filled)| all.with(filled));
         (planes, all)
     }
 

@@ -32,7 +32,7 @@ pub(super) trait Maker: Debug + Sync {
         requested
     }
 
-    /// Fills one row of each channel, `[channel][texel]`.
+    /// Fills the channels of some texels, `[channel][texel]`.
     fn fill(&self, rgb: &[[f32; 3]], planes: &mut [&mut [f32]]) -> Filled;
 }
 

@@ -70,6 +70,7 @@ impl Maker for SpectralMaker<'_> {
         self.preview.fill_rgb(rgb, preview);
         let (bands, moved) = spectral.split_at_mut(self.grid.len());
         let pairs: Vec<[usize; 2]> = self.pairs().collect();
+        let nm: Vec<f64> = self.grid.wavelengths_nm().collect();
         for (texel, rgb) in rgb.iter().enumerate() {
             let color = LinearRgb(rgb.map(f64::from));
             let mixture = self.cube.lookup(color, Interpolation::Blend);
@@ -83,8 +84,8 @@ impl Maker for SpectralMaker<'_> {
                     plane[texel] = to_single(matrix[*o][*i]);
                 }
             } else {
-                for (band, nm) in bands.iter_mut().zip(self.grid.wavelengths_nm()) {
-                    band[texel] = to_single(mixture.reflectance(nm));
+                for (band, share) in bands.iter_mut().zip(mixture.reflectances(&nm)) {
+                    band[texel] = to_single(share);
                 }
             }
         }

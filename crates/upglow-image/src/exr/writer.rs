@@ -5,6 +5,7 @@ use std::path::Path;
 
 use exr::compression::Compression as Method;
 use half::f16;
+use half::slice::HalfFloatSliceExt as _;
 use rayon::prelude::*;
 use upglow::Aside;
 use upglow_color::RgbSpace;
@@ -312,12 +313,22 @@ fn sorted(names: &[String]) -> Result<Vec<usize>, WriteExrError> {
 }
 
 fn encode(sample: Sample, values: &[f32], to: &mut [u8]) {
-    fn fill<const N: usize>(to: &mut [u8], values: &[f32], bytes: impl Fn(f32) -> [u8; N]) {
-        to.as_chunks_mut().0.iter_mut().zip(values).for_each(|(to, v)| *to = bytes(*v));
-    }
     match sample {
-        Sample::Half => fill(to, values, |v| f16::from_f32(v).to_le_bytes()),
-        Sample::Float | Sample::Uint => fill(to, values, f32::to_le_bytes),
+        Sample::Half => {
+            // Many at once: asking which instructions there are takes longer than one conversion.
+            let mut halves = [f16::ZERO; 256];
+            let pieces = to.chunks_mut(2 * halves.len()).zip(values.chunks(halves.len()));
+            for (to, values) in pieces {
+                let halves = &mut halves[..values.len()];
+                halves.convert_from_f32_slice(values);
+                let bytes = to.as_chunks_mut().0.iter_mut().zip(halves);
+                bytes.for_each(|(to, v)| *to = v.to_le_bytes());
+            }
+        }
+        Sample::Float | Sample::Uint => {
+            let bytes = to.as_chunks_mut().0.iter_mut().zip(values);
+            bytes.for_each(|(to, v)| *to = v.to_le_bytes());
+        }
     }
 }
 
@@ -339,14 +350,14 @@ fn pack(compression: Compression, block: &[u8]) -> Vec<u8> {
 ///
 /// `openexr`, the predictor of ZIP compression.
 fn differences(block: &[u8]) -> Vec<u8> {
-    let even = block.iter().step_by(2);
-    let odd = block.iter().skip(1).step_by(2);
-    let mut before = None;
-    even.chain(odd)
-        .map(|&byte| {
-            let difference = before.map_or(byte, |b: u8| byte.wrapping_sub(b).wrapping_add(128));
-            before = Some(byte);
-            difference
-        })
-        .collect()
+    let mut separate = Vec::with_capacity(block.len());
+    let (pairs, last) = block.as_chunks::<2>();
+    separate.extend(pairs.iter().map(|[even, _]| *even).chain(last.iter().copied()));
+    separate.extend(pairs.iter().map(|[_, odd]| *odd));
+    let mut before = 128;
+    for byte in &mut separate {
+        let difference = byte.wrapping_sub(before).wrapping_add(128);
+        before = std::mem::replace(byte, difference);
+    }
+    separate
 }

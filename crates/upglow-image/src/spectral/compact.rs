@@ -225,23 +225,34 @@ impl CompactLayout {
     /// maps of dyes cannot hold materials of different pooled dyes, or more than one film, and lobes hold
     /// at most four materials.
     pub(crate) fn encode(&self, mixture: &Mixture<'_>) -> Option<Vec<f32>> {
+        let mut values = mixture.reflectances(&self.wavelengths_nm);
+        if !mixture.is_fluorescent() {
+            values.resize(values.len() + self.map_count(), 0.0);
+            return Some(values.into_iter().map(to_single).collect());
+        }
         let maps = match self.form {
             CompactForm::PerDye => self.dye_maps(mixture)?,
             CompactForm::PerLobe => lobe_maps(mixture)?,
         };
         let maps: Vec<f32> = maps.into_iter().map(to_single).collect();
         let lobes = self.lobes(&maps);
-        let bands = self.wavelengths_nm.iter().enumerate();
-        let diagonal =
-            bands.map(|(i, &nm)| to_single(mixture.reflectance(nm) + self.moved(&lobes, i, i)));
-        Some(diagonal.chain(maps.iter().copied()).collect())
+        values.iter_mut().enumerate().for_each(|(i, value)| *value += self.moved(&lobes, i, i));
+        Some(values.into_iter().map(to_single).chain(maps).collect())
+    }
+
+    /// Number of maps beside the reflectances.
+    fn map_count(&self) -> usize {
+        match self.form {
+            CompactForm::PerDye => self.dyes.len(),
+            CompactForm::PerLobe => 2 * LOBES,
+        }
     }
 
     /// The re-radiation matrix of a texel, `[outgoing][incident]`, with the reflectance on the diagonal.
     /// `None` unless there is one value per channel.
     pub(crate) fn expand(&self, texel: &[f32]) -> Option<Vec<Vec<f32>>> {
         let bands = self.wavelengths_nm.len();
-        if texel.len() != bands + self.map_names().len() {
+        if texel.len() != bands + self.map_count() {
             return None;
         }
         let (reflectances, maps) = texel.split_at(bands);

@@ -66,6 +66,19 @@ impl<'m> Mixture<'m> {
         matrix
     }
 
+    /// [`Bispectral::reflectance`] at each of these wavelengths, nm.
+    pub fn reflectances(&self, lambda_nm: &[f64]) -> Vec<f64> {
+        if self.is_fluorescent() {
+            return lambda_nm.iter().map(|&nm| self.reflectance(nm)).collect();
+        }
+        let mut sums = vec![0.0; lambda_nm.len()];
+        for (weight, material) in self.parts() {
+            let shown = lambda_nm.iter().map(|&nm| weight * material.reflectance.at(nm));
+            sums.iter_mut().zip(shown).for_each(|(sum, share)| *sum += share);
+        }
+        sums
+    }
+
     /// The color of the mixture under the light of `sums`, which must be of the same model.
     ///
     /// # Examples
@@ -230,6 +243,20 @@ mod tests {
                 for (i, nm) in Grid::FIT.wavelengths_nm().enumerate() {
                     let column: f64 = matrix.iter().map(|row| row[i]).sum();
                     prop_assert!(column <= mixture.albedo(nm) + 1e-12, "{nm} nm: {column}");
+                }
+            }
+        }
+
+        #[test]
+        fn many_reflectances_are_those_of_each_wavelength(u in unit6(), v in unit6(), t in 0.0..1.0) {
+            let nm: Vec<f64> = Grid::FIT.wavelengths_nm().collect();
+            let nothing = (0.0, Material::default());
+            for model in models() {
+                let passive = Material::passive(material(&model, v).reflectance);
+                for first in [material(&model, u), Material::passive(Sigmoid::flat(u[0]))] {
+                    let mixture = Mixture::new(&model, [(t, first), (1.0 - t, passive), nothing, nothing]);
+                    let each: Vec<f64> = nm.iter().map(|&nm| mixture.reflectance(nm)).collect();
+                    prop_assert_eq!(mixture.reflectances(&nm), each);
                 }
             }
         }
