@@ -4,12 +4,10 @@ use std::collections::HashMap;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
+use upglow_image::SUFFIXES;
 use upglow_terminal::Failure;
 
 use crate::files;
-
-/// Suffixes of the pictures in a folder.
-const SUFFIXES: [&str; 4] = ["exr", "tif", "tiff", "png"];
 
 /// The pictures of a command.
 #[derive(Debug, Default)]

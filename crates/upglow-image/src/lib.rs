@@ -1,6 +1,6 @@
 //! Bakes pictures into spectral files and checks them, by bands of rows and in bounded memory.
 //!
-//! - pictures: [`Picture`] reads OpenEXR, TIFF and PNG by [`Band`]s; [`Encoding`] makes them linear
+//! - pictures: [`Picture`] reads six formats ([`FORMATS`]) by [`Band`]s; [`Encoding`] makes them linear
 //! - before baking: [`Checker`] determines which kind of material each texel needs
 //! - baking: [`Baker`] writes materials, spectra or colors under a light, in a [`Form`]
 //! - baked files: [`MaterialPicture`] and [`SpectralPicture`] read texels, [`Lint`] checks files
@@ -54,12 +54,12 @@ pub use exr::error::ExrError;
 pub use exr::header::Sample;
 pub use exr::reader::ExrReader;
 pub use exr::writer::{Compression, ExrDescription, ExrWriter, WriteExrError};
-pub use picture::Picture;
 pub use picture::band::Band;
 pub use picture::encoding::{Encoding, ParametricCurve};
 pub use picture::error::PictureError;
 pub use picture::interop::InteropSpace;
 pub use picture::stated::{Declared, DeclaredAlpha, Found, Interpretation, Missing, Word};
+pub use picture::{FORMATS, Picture, SUFFIXES};
 pub use spectral::channel::BispectralUnit;
 pub use spectral::error::FormError;
 pub use spectral::lint::findings::{Finding, Lint, Severity};

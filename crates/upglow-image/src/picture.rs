@@ -1,13 +1,16 @@
-//! Reads pictures of three formats by bands of rows.
+//! Reads pictures of six formats by bands of rows.
 
 pub(crate) mod band;
 pub(crate) mod chromaticities;
 mod code_points;
 pub(crate) mod encoding;
 pub(crate) mod error;
+mod exif;
 mod exr;
+mod hdr;
 mod icc;
 pub(crate) mod interop;
+mod jpeg;
 pub(crate) mod linear;
 mod orientation;
 mod png;
@@ -15,6 +18,7 @@ mod source;
 pub(crate) mod stated;
 #[cfg(test)]
 mod tests;
+mod tga;
 mod tiff;
 
 use std::fs::File;
@@ -27,26 +31,38 @@ use self::band::Band;
 use self::encoding::Encoding;
 use self::error::PictureError;
 use self::exr::ExrPicture;
+use self::hdr::HdrPicture;
+use self::jpeg::JpegPicture;
 use self::orientation::Turned;
 use self::png::PngPicture;
 use self::source::{Alpha, Facts, Source};
 use self::stated::{Chosen, Declared, Stated};
+use self::tga::TgaPicture;
 use self::tiff::TiffPicture;
 use crate::exr::header::Window;
+
+/// The formats that are read.
+pub const FORMATS: &str = "OpenEXR, TIFF, PNG, JPEG, Radiance or TGA";
+
+/// Suffixes of files in these formats; `tx` is a texture in OpenEXR or TIFF.
+pub const SUFFIXES: [&str; 10] =
+    ["exr", "tif", "tiff", "tx", "png", "jpg", "jpeg", "hdr", "pic", "tga"];
 
 /// Reads a picture from top to bottom.
 ///
 /// Supported are OpenEXR (rows or tiles, every compression but HTJ2K, no deep data; R, G, B or Y, with or
 /// without A, also in a layer or part), TIFF (integers of 1 to 32 bits, floats of 16, 32 and 64 bits; gray
 /// or RGB, with or without alpha and further samples; strips or tiles, interleaved or in planes; LZW,
-/// deflate, `PackBits` or not compressed) and PNG (all types). Pictures that their files say are turned or
-/// mirrored are read upright.
+/// deflate, `PackBits` or not compressed), PNG (all types), JPEG (gray or RGB of 8 bits, Huffman coded),
+/// Radiance (RGBE; EXPOSURE and COLORCORR are undone) and TGA (gray, colors of 15 to 32 bits, color maps).
+/// Of several levels of detail, as in `.tx`, the full one is read. Pictures that their files say are turned
+/// or mirrored are read upright.
 ///
 /// # Memory
 ///
 /// A band takes 12 bytes per pixel, 16 with alpha, and as much again while it is decompressed: 32 MiB for
-/// 64 rows of 16,384 columns. Files in tiles or blocks of rows take one more row of those. Interlaced PNG
-/// and pictures that are not stored upright are decompressed whole, and refused above 1 GiB.
+/// 64 rows of 16,384 columns. Files in tiles or blocks of rows take one more row of those. JPEG, interlaced
+/// PNG and pictures that are not stored upright are decompressed whole, and refused above 1 GiB.
 #[derive(Debug)]
 pub struct Picture {
     source: Box<dyn Source>,
@@ -56,7 +72,8 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Opens a picture, whose first bytes determine its format.
+    /// Opens a picture, whose first bytes determine its format. TGA has none of its own: it is determined by
+    /// its last bytes or the suffix `.tga`.
     ///
     /// # Errors
     ///
@@ -75,6 +92,9 @@ impl Picture {
             _ if is_exr => ExrPicture::open(path, layer)?,
             [b'I', b'I', 42 | 43, 0] | [b'M', b'M', 0, 42 | 43] => TiffPicture::open(path)?,
             [0x89, b'P', b'N', b'G'] => PngPicture::open(path)?,
+            [0xff, 0xd8, 0xff, _] => JpegPicture::open(path)?,
+            [b'#', b'?', ..] => HdrPicture::open(path)?,
+            _ if tga::is_tga(path)? => TgaPicture::open(path)?,
             _ => return Err(PictureError::Format { found }),
         };
         if layer.is_some() && !is_exr {
@@ -99,7 +119,7 @@ impl Picture {
     ///
     /// OpenEXR: ACES2065-1 if `acesImageContainerFlag` is 1, else `colorInteropID`, else
     /// `chromaticities`. PNG: cICP, else the ICC profile, else sRGB, else cHRM. TIFF: the ICC profile,
-    /// else the primaries and the white.
+    /// else the primaries and the white. JPEG: the ICC profile, else sRGB by Exif. Radiance: PRIMARIES.
     pub fn space(&self) -> Option<&RgbSpace> {
         match &self.facts.color.space {
             Stated::Yes { value, .. } => Some(value),
@@ -109,8 +129,8 @@ impl Picture {
 
     /// The encoding of stored numbers, if the file or its format states it.
     ///
-    /// OpenEXR and TIFF of floats are linear unless they state another one; PNG has cICP, an ICC profile,
-    /// sRGB or gAMA; TIFF of integers an ICC profile.
+    /// OpenEXR, Radiance and TIFF of floats are linear unless they state another one; PNG has cICP, an ICC
+    /// profile, sRGB or gAMA; TIFF of integers an ICC profile; JPEG an ICC profile or sRGB by Exif.
     pub fn encoding(&self) -> Option<Encoding> {
         match self.facts.color.encoding {
             Stated::Yes { value, .. } => Some(value),

@@ -13,6 +13,9 @@ use upglow_image::{ExrDescription, ExrWriter, Lint, Picture, SpectralPicture};
 
 const SIZE: [usize; 2] = [40, 37];
 
+/// The name of all files: only TGA goes by it.
+const SAMPLE: &str = "x.tga";
+
 fn value(x: usize, y: usize, c: usize) -> f32 {
     ((x * 5 + y * 11 + c * 3) % 97) as f32 / 97.0
 }
@@ -68,6 +71,37 @@ fn tiff_file(folder: &Path, compression: tiff::encoder::Compression) -> Vec<u8> 
     std::fs::read(path).unwrap()
 }
 
+/// Bytes in packets of ten repetitions and ten others, for pixels of `size` bytes.
+fn packets(size: usize, repeated: u8, others: u8) -> Vec<u8> {
+    let pixel = |i: usize| (0..size).map(move |k| (i * 7 + k).to_le_bytes()[0]);
+    let run = std::iter::once(repeated).chain(pixel(3));
+    run.chain(std::iter::once(others)).chain((0..10).flat_map(pixel)).collect()
+}
+
+fn tga_file(is_packed: bool) -> Vec<u8> {
+    let mut bytes = vec![0, 0, if is_packed { 10 } else { 2 }, 0, 0, 0, 0, 0, 0, 0, 0, 0];
+    bytes.extend([40, 0, 37, 0, 24, 0x20]);
+    if is_packed {
+        bytes.extend(packets(3, 0x89, 9).repeat(2 * 37));
+    } else {
+        bytes.extend((0..=250).cycle().take(40 * 37 * 3));
+    }
+    bytes
+}
+
+fn radiance_file(is_packed: bool) -> Vec<u8> {
+    let mut bytes = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=2\n\n-Y 37 +X 40\n".to_vec();
+    for _ in 0..37 {
+        if is_packed {
+            bytes.extend([2, 2, 0, 40]);
+            bytes.extend(packets(1, 138, 10).repeat(2 * 4));
+        } else {
+            bytes.extend((100..=250).cycle().take(40 * 4));
+        }
+    }
+    bytes
+}
+
 fn samples(folder: &Path) -> Vec<(String, Vec<u8>)> {
     let mut samples = Vec::new();
     for compression in [
@@ -96,6 +130,12 @@ fn samples(folder: &Path) -> Vec<(String, Vec<u8>)> {
         ("packbits", tiff::encoder::Compression::Packbits),
     ] {
         samples.push((format!("{name} tiff"), tiff_file(folder, compression)));
+    }
+    samples.push(("baseline jpeg".into(), include_bytes!("data/baseline.jpg").to_vec()));
+    samples.push(("progressive jpeg".into(), include_bytes!("data/progressive.jpg").to_vec()));
+    for is_packed in [false, true] {
+        samples.push((format!("tga, packed {is_packed}"), tga_file(is_packed)));
+        samples.push((format!("radiance, packed {is_packed}"), radiance_file(is_packed)));
     }
     samples
 }
@@ -133,7 +173,7 @@ fn check(path: &Path, name: &str, bytes: &[u8]) -> Result<(), String> {
 fn whole_files_are_read() {
     let folder = tempfile::tempdir().unwrap();
     for (name, bytes) in samples(folder.path()) {
-        assert_eq!(check(&folder.path().join("x"), &name, &bytes), Ok(()), "{name}");
+        assert_eq!(check(&folder.path().join(SAMPLE), &name, &bytes), Ok(()), "{name}");
     }
 }
 
@@ -146,7 +186,7 @@ fn a_truncated_file_is_refused_wherever_it_ends() {
         let lengths = (0..bytes.len().min(400)).step_by(step);
         let lengths = lengths.chain((400..bytes.len()).step_by(211));
         for length in lengths {
-            let result = check(&folder.path().join("x"), &name, &bytes[..length]);
+            let result = check(&folder.path().join(SAMPLE), &name, &bytes[..length]);
             // Bytes after the last block of an interlaced PNG may not be read.
             let tail = name.contains("png") && length + 64 > bytes.len();
             let message = result.err().or(tail.then(String::new));
@@ -183,7 +223,7 @@ fn altered_files_panic_nowhere(rounds: usize) {
                 let at = random.below(end);
                 altered[at] = if random.below(3) == 0 { 0xff } else { random.byte() };
             }
-            let _ = check(&folder.path().join("x"), &name, &altered);
+            let _ = check(&folder.path().join(SAMPLE), &name, &altered);
         }
     }
 }
@@ -206,7 +246,8 @@ fn noise_and_absent_files_are_refused_with_what_was_found() {
     let message = |bytes: &[u8]| check(&path, "noise", bytes).unwrap_err();
     assert_eq!(
         message(b"P6 640 480"),
-        "the file begins with [50, 36, 20, 36], expected an OpenEXR, TIFF or PNG picture"
+        "the file begins with [50, 36, 20, 36], expected a picture: OpenEXR, TIFF, PNG, \
+         JPEG, Radiance or TGA"
     );
     assert!(message(b"").starts_with("the file begins with [], expected"));
     assert!(read_all(&folder.path().join("absent")).is_err());

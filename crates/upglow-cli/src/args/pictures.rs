@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use upglow_color::{Adaptation, Grid, choices};
-use upglow_image::{Declared, DeclaredAlpha, Encoding, PngBits, Repair, Sample};
+use upglow_image::{Declared, DeclaredAlpha, Encoding, FORMATS, PngBits, Repair, Sample};
 use upglow_terminal::{Threads, word};
 
 use super::values::{PictureSpace, bands, lights, picture_space, position, stops};
@@ -47,8 +47,7 @@ impl PictureArgs {
 pub(crate) struct BakeArgs {
     /// Cube made by `upglow build`
     pub(crate) cube: PathBuf,
-    /// Pictures, or folders of pictures: EXR, TIFF or PNG
-    #[arg(required = true, value_name = "IN")]
+    #[arg(required = true, value_name = "IN", help = inputs_help())]
     pub(crate) inputs: Vec<PathBuf>,
     /// File to write for one picture, EXR or also PNG with --as radiance, or folder for several;
     /// created if it does not exist
@@ -116,8 +115,7 @@ pub(crate) struct ResultArgs {
 
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct CheckArgs {
-    /// Pictures, or folders of pictures: EXR, TIFF or PNG
-    #[arg(required = true, value_name = "IN")]
+    #[arg(required = true, value_name = "IN", help = inputs_help())]
     pub(crate) inputs: Vec<PathBuf>,
     /// Write an illustrated report on all pictures to this file
     #[arg(long, short, value_name = "REPORT.html")]
@@ -169,6 +167,10 @@ pub(crate) struct ExamplesArgs {
     /// Folder for the EXR files; created if it does not exist
     #[arg(long, default_value = "examples", value_name = "FOLDER")]
     pub(crate) out: PathBuf,
+}
+
+fn inputs_help() -> String {
+    format!("Pictures, or folders of pictures: {FORMATS}")
 }
 
 /// What is written for a picture.

@@ -14,7 +14,7 @@ pub enum PictureError {
     #[error(transparent)]
     Io(#[from] io::Error),
     /// The file is not in one of the supported formats.
-    #[error("the file begins with {found:02x?}, expected an OpenEXR, TIFF or PNG picture")]
+    #[error("the file begins with {found:02x?}, expected a picture: {}", super::FORMATS)]
     Format {
         /// Its first bytes, four at most.
         found: Vec<u8>,
@@ -22,9 +22,6 @@ pub enum PictureError {
     /// An OpenEXR file that cannot be read.
     #[error(transparent)]
     Exr(#[from] ExrError),
-    /// A PNG file that cannot be read.
-    #[error("damaged, expected a whole PNG picture")]
-    Png(#[from] ::png::DecodingError),
     /// A file that contradicts its format.
     #[error("damaged: {found}, expected a whole {format} picture")]
     Damaged {
@@ -102,6 +99,16 @@ pub enum PictureError {
 }
 
 impl PictureError {
+    /// What an error of reading means: a file that ends early is damaged.
+    pub(super) fn read(error: io::Error, format: &'static str) -> Self {
+        match error.kind() {
+            io::ErrorKind::UnexpectedEof => {
+                Self::Damaged { found: "it ends too early".into(), format }
+            }
+            _ => Self::Io(error),
+        }
+    }
+
     pub(super) fn pixels(found: impl Into<String>, expected: &'static str) -> Self {
         Self::Pixels { found: found.into(), expected }
     }

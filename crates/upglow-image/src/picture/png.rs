@@ -2,19 +2,24 @@
 
 use std::fmt;
 use std::fs::File;
-use std::io::{BufReader, Cursor};
+use std::io::BufReader;
 use std::ops::Range;
 use std::path::Path;
 
-use png::{BitDepth, ColorType, DecodeOptions, Decoder, Info, Reader, Transformations};
+use png::{
+    BitDepth, ColorType, DecodeOptions, Decoder, DecodingError, Info, Reader, Transformations,
+};
 use upglow_color::RgbSpace;
 
 use super::chromaticities::space;
 use super::encoding::Encoding;
 use super::error::PictureError;
-use super::source::{Alpha, Facts, LastSample, Pixels, Source, check_memory, check_size, pixels};
+use super::exif::Exif;
+use super::source::{
+    Alpha, Facts, LastSample, Pixels, Source, add_bytes, add_words, check_memory, check_size,
+    pixels,
+};
 use super::stated::{Stated, StatedColor};
-use super::tiff::{Directory, ORIENTATION};
 use super::{code_points, icc};
 
 pub(super) struct PngPicture {
@@ -46,7 +51,7 @@ impl PngPicture {
         let mut decoder = Decoder::new_with_options(file, options);
         decoder.set_limits(png::Limits { bytes: CHUNK_BYTES });
         decoder.set_transformations(Transformations::EXPAND);
-        let reader = decoder.read_info()?;
+        let reader = decoder.read_info().map_err(refusal)?;
         let info = reader.info();
         let size = [info.width as usize, info.height as usize];
         check_size(size)?;
@@ -67,7 +72,7 @@ impl PngPicture {
             windows: None,
             block_rows: 1,
             orientation: match &info.exif_metadata {
-                Some(exif) => Directory::read(Cursor::new(&exif[..]))?.integer(ORIENTATION, 1)?,
+                Some(exif) => Exif::read(exif, FORMAT)?.orientation,
                 None => 1,
             },
         };
@@ -79,8 +84,8 @@ impl PngPicture {
     fn whole(&mut self) -> Result<&[u8], PictureError> {
         if self.whole.is_none() {
             let mut bytes = vec![0; self.row.len() * self.reader.info().height as usize];
-            self.reader.next_frame(&mut bytes)?;
-            self.reader.finish()?;
+            self.reader.next_frame(&mut bytes).map_err(refusal)?;
+            self.reader.finish().map_err(refusal)?;
             self.whole = Some(bytes);
         }
         Ok(self.whole.as_deref().unwrap_or(&[]))
@@ -93,31 +98,45 @@ impl Source for PngPicture {
         if self.reader.info().interlaced {
             let (row_bytes, deep) = (self.row.len(), self.deep);
             let bytes = &self.whole()?[rows.start * row_bytes..rows.end * row_bytes];
-            to_fractions(bytes, deep, &mut samples);
+            add_samples(bytes, deep, &mut samples);
         } else {
             let is_last = rows.end == self.reader.info().height as usize;
             for _ in rows {
-                self.reader.read_row(&mut self.row)?;
-                to_fractions(&self.row, self.deep, &mut samples);
+                self.reader.read_row(&mut self.row).map_err(refusal)?;
+                add_samples(&self.row, self.deep, &mut samples);
             }
             if is_last {
                 // The checksums of the last chunk come after its last row.
-                self.reader.finish()?;
+                self.reader.finish().map_err(refusal)?;
             }
         }
         Ok(pixels(&samples, self.channels))
     }
 }
 
-/// Converts integers to fractions of the greatest, 0..=1.
-fn to_fractions(bytes: &[u8], deep: bool, to: &mut Vec<f32>) {
+/// Adds samples of 8 or 16 bits as fractions of the greatest.
+fn add_samples(bytes: &[u8], deep: bool, to: &mut Vec<f32>) {
     if deep {
-        let words = bytes.as_chunks().0.iter();
-        to.extend(words.map(|b| f32::from(u16::from_be_bytes(*b)) / f32::from(u16::MAX)));
+        add_words(bytes.as_chunks().0.iter().map(|b| u16::from_be_bytes(*b)), to);
     } else {
-        to.extend(bytes.iter().map(|b| f32::from(*b) / f32::from(u8::MAX)));
+        add_bytes(bytes, to);
     }
 }
+
+/// What is wrong with a file that the decoder refuses.
+fn refusal(error: DecodingError) -> PictureError {
+    let found = match error {
+        DecodingError::IoError(error) => return PictureError::read(error, FORMAT),
+        DecodingError::LimitsExceeded => {
+            let (found, expected) = (u64::MAX, CHUNK_BYTES as u64);
+            return PictureError::Memory { what: "a chunk of its header", found, expected };
+        }
+        _ => "its data or a checksum is wrong",
+    };
+    PictureError::Damaged { found: found.into(), format: FORMAT }
+}
+
+const FORMAT: &str = "PNG";
 
 /// What a file states, by the chunk of the highest priority: cICP, iCCP, sRGB, then gAMA and cHRM.
 fn stated_color(info: &Info<'_>) -> Result<StatedColor, PictureError> {

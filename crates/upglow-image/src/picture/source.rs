@@ -67,6 +67,16 @@ pub(super) fn pixels(samples: &[f32], channels: usize) -> Pixels {
     (rgb, alpha)
 }
 
+/// Adds integers of 8 bits as fractions of the greatest, 0..=1.
+pub(super) fn add_bytes(bytes: &[u8], to: &mut Vec<f32>) {
+    to.extend(bytes.iter().map(|v| f32::from(*v) / f32::from(u8::MAX)));
+}
+
+/// Adds integers of 16 bits as fractions of the greatest, 0..=1.
+pub(super) fn add_words(words: impl Iterator<Item = u16>, to: &mut Vec<f32>) {
+    to.extend(words.map(|v| f32::from(v) / f32::from(u16::MAX)));
+}
+
 pub(super) fn check_size(found: [usize; 2]) -> Result<(), PictureError> {
     let is_valid = found.iter().all(|side| (1..=MAX_SIDE).contains(side));
     is_valid.then_some(()).ok_or(PictureError::Size { found })

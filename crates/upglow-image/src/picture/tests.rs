@@ -12,9 +12,12 @@ use super::encoding::Encoding;
 use super::source::Alpha;
 use super::stated::{Declared, DeclaredAlpha};
 
+mod hdr_kinds;
+mod jpeg_kinds;
 mod png_kinds;
 mod shared_pictures;
 mod stated_colors;
+mod tga_kinds;
 mod tiff_file;
 mod tiff_kinds;
 

@@ -74,8 +74,11 @@ mod tag {
     pub(super) const EXTRA_SAMPLES: u16 = 338;
     pub(super) const SAMPLE_FORMAT: u16 = 339;
     pub(super) const ICC_PROFILE: u16 = 34675;
+    pub(in super::super) const EXIF: u16 = 34665;
+    /// In the directory of Exif.
+    pub(in super::super) const EXIF_COLOR_SPACE: u16 = 40961;
 }
-pub(super) use self::tag::ORIENTATION;
+pub(super) use self::tag::{EXIF, EXIF_COLOR_SPACE, ORIENTATION};
 
 const KINDS: &str = "gray or RGB of 1 to 32 bit integers, or 16, 32 or 64 bit floats";
 const COMPRESSIONS: &str = "none, LZW, deflate or PackBits: save the picture as one of these";

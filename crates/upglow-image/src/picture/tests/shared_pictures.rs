@@ -85,7 +85,7 @@ fn pictures_of_other_programs_have_their_right_values_or_are_refused_by_name() {
         ("normals_only.exr", "channels N.X, N.Y, N.Z, expected R, G and B"),
         ("two_layers.exr", "color layers albedo, diffuse, expected the name of one"),
         ("cicp_pq.png", "cICP states PQ, a curve of displays"),
-        ("damaged_crc.png", "damaged, expected a whole PNG picture"),
+        ("damaged_crc.png", "damaged: its data or a checksum is wrong, expected a whole PNG"),
     ] {
         for declared in [&own, &srgb] {
             let message = read(&folder.join(file), declared).unwrap_err();

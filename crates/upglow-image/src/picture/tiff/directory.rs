@@ -26,6 +26,8 @@ pub(in super::super) struct Directory<R> {
     source: R,
     length: u64,
     pub(super) order: ByteOrder,
+    /// Bytes of a position, 4 or 8.
+    word: usize,
     entries: BTreeMap<u16, Entry>,
 }
 
@@ -40,15 +42,35 @@ impl<R: Read + Seek> Directory<R> {
     /// [`PictureError`] if the source ends inside it or it is not one.
     pub(in super::super) fn read(mut source: R) -> Result<Self, PictureError> {
         let length = source.seek(SeekFrom::End(0))?;
-        let mut directory =
-            Self { source, length, order: ByteOrder::Little, entries: BTreeMap::new() };
+        let entries = BTreeMap::new();
+        let mut directory = Self { source, length, order: ByteOrder::Little, word: 4, entries };
         let [mark, _, low, high] = directory.bytes::<4>(0)?;
         directory.order = if mark == b'M' { ByteOrder::Big } else { ByteOrder::Little };
-        let is_big = low.max(high) == 43;
-        let word = if is_big { 8 } else { 4 };
-        let start = directory.number(word, word as u64)?;
-        let count_bytes = if is_big { 8 } else { 2 };
-        let count = directory.number(count_bytes, start)?;
+        directory.word = if low.max(high) == 43 { 8 } else { 4 };
+        let start = directory.number(directory.word, directory.word as u64)?;
+        directory.read_entries(start)?;
+        Ok(directory)
+    }
+
+    /// Goes to the directory whose position a field holds; `None` if the field is absent.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Directory::read`].
+    pub(in super::super) fn at(mut self, tag: u16) -> Result<Option<Self>, PictureError> {
+        if !self.has(tag) {
+            return Ok(None);
+        }
+        let start = self.integer(tag, 0)?;
+        self.read_entries(start)?;
+        Ok(Some(self))
+    }
+
+    fn read_entries(&mut self, start: u64) -> Result<(), PictureError> {
+        let (word, length) = (self.word, self.length);
+        let count_bytes = if word == 8 { 8 } else { 2 };
+        let count = self.number(count_bytes, start)?;
+        self.entries.clear();
         let entry_bytes = 4 + 2 * word as u64;
         let first = start + count_bytes as u64;
         let end = count.checked_mul(entry_bytes).and_then(|bytes| bytes.checked_add(first));
@@ -57,15 +79,15 @@ impl<R: Read + Seek> Directory<R> {
         }
         for i in 0..count {
             let at = first + i * entry_bytes;
-            let tag = directory.small(at)?;
-            let kind = directory.small(at + 2)?;
-            let count = directory.number(word, at + 4)?;
+            let tag = self.small(at)?;
+            let kind = self.small(at + 2)?;
+            let count = self.number(word, at + 4)?;
             let inline = at + 4 + word as u64;
             let bytes = count.saturating_mul(size_of_kind(kind));
-            let at = if bytes <= word as u64 { inline } else { directory.number(word, inline)? };
-            directory.entries.entry(tag).or_insert(Entry { kind, count, at });
+            let at = if bytes <= word as u64 { inline } else { self.number(word, inline)? };
+            self.entries.entry(tag).or_insert(Entry { kind, count, at });
         }
-        Ok(directory)
+        Ok(())
     }
 
     /// Whether the directory has this field.

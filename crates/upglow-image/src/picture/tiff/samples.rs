@@ -3,6 +3,7 @@
 use half::f16;
 use upglow_color::rounding::to_single;
 
+use super::super::source::{add_bytes, add_words};
 use super::directory::ByteOrder;
 
 /// How samples are stored.
@@ -71,12 +72,9 @@ impl Storage {
             }
         }
         match self.number {
-            Number::Integer { bits: 8 } => {
-                to.extend(bytes.iter().map(|v| f32::from(*v) / f32::from(u8::MAX)));
-            }
+            Number::Integer { bits: 8 } => add_bytes(bytes, to),
             Number::Integer { bits: 16 } => {
-                let words = bytes.as_chunks().0.iter().map(|b| u16::from_le_bytes(*b));
-                to.extend(words.map(|v| f32::from(v) / f32::from(u16::MAX)));
+                add_words(bytes.as_chunks().0.iter().map(|b| u16::from_le_bytes(*b)), to);
             }
             Number::Integer { bits } => {
                 let words = bytes.chunks_exact(size).map(|b| ByteOrder::Little.integer(b));
