@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use serde::Serialize;
+use upglow_image::Interpretation;
 use upglow_terminal::{Console, Failure, Report};
 
 use crate::output::{Lines, failed};
@@ -24,13 +25,21 @@ pub(crate) struct Batch<R> {
     left_out: Vec<String>,
 }
 
+/// What is reported of a picture.
+pub(crate) trait Interpreted {
+    /// How its numbers were understood.
+    fn interpretation(&self) -> &Interpretation;
+    /// The picture.
+    fn picture(&self) -> &str;
+}
+
 #[derive(Debug, Serialize)]
 struct FailedPicture {
     file: String,
     error: String,
 }
 
-impl<R: Report> Batch<R> {
+impl<R: Report + Interpreted> Batch<R> {
     pub(crate) fn new(verb: &'static str, inputs: &Inputs) -> Self {
         let left_out = inputs.left_out.iter().map(|path| path.display().to_string()).collect();
         let total = inputs.pictures.len();
@@ -99,7 +108,7 @@ impl<R: Report> Batch<R> {
     }
 }
 
-impl<R: Report> Report for Batch<R> {
+impl<R: Report + Interpreted> Report for Batch<R> {
     fn text(&self) -> String {
         /// Most names that are listed; `--json` lists all.
         const NAMES: usize = 12;
@@ -113,12 +122,21 @@ impl<R: Report> Report for Batch<R> {
         }
         let mut lines = Lines::default();
         lines.add("pictures", counts.join(", "));
-        if !left_out.is_empty() {
-            let count = left_out.len();
-            let more = if count > NAMES { ", …" } else { "" };
-            let names = left_out[..count.min(NAMES)].join(", ");
-            lines.add("left out", format_args!("{count} that are no pictures: {names}{more}"));
-        }
+        let mut list = |label: &str, what: &str, names: &[&str]| {
+            let count = names.len();
+            if count > 0 {
+                let more = if count > NAMES { ", …" } else { "" };
+                let names = names[..count.min(NAMES)].join(", ");
+                lines.add(label, format_args!("{count} {what}: {names}{more}"));
+            }
+        };
+        let overruled = pictures.iter().filter(|report| report.interpretation().is_overruled());
+        let mut overruled: Vec<&str> = overruled.map(Interpreted::picture).collect();
+        // One picture under several lights has several reports.
+        overruled.dedup();
+        list("overruled", "whose files state another space or encoding than declared", &overruled);
+        let left_out: Vec<&str> = left_out.iter().map(String::as_str).collect();
+        list("left out", "that are no pictures", &left_out);
         lines.to_string()
     }
 }

@@ -60,3 +60,12 @@ pub(crate) fn check_output_of(
 pub(crate) fn is_same(a: &Path, b: &Path) -> bool {
     matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }
+
+/// Whether a path, which need not exist, is inside a folder or the folder itself.
+pub(crate) fn is_inside(path: &Path, folder: &Path) -> bool {
+    let there = path.ancestors().find_map(|path| {
+        let is_here = path.as_os_str().is_empty();
+        if is_here { Path::new(".") } else { path }.canonicalize().ok()
+    });
+    matches!((there, folder.canonicalize()), (Some(a), Ok(b)) if a.starts_with(&b))
+}

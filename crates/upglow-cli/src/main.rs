@@ -7,6 +7,7 @@ mod args;
 mod batch;
 mod commands;
 mod files;
+mod name_pattern;
 mod output;
 mod pictures;
 mod plan;

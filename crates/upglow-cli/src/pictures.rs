@@ -8,32 +8,71 @@ use upglow_image::SUFFIXES;
 use upglow_terminal::Failure;
 
 use crate::files;
+use crate::name_pattern::{NamePattern, is_udim};
 
 /// The pictures of a command.
 #[derive(Debug, Default)]
 pub(crate) struct Inputs {
     /// The given pictures, and those in the given folders, sorted by name within each folder.
-    pub(crate) pictures: Vec<PathBuf>,
+    pub(crate) pictures: Vec<Input>,
     /// What the folders hold beside them, without hidden files.
     pub(crate) left_out: Vec<PathBuf>,
 }
 
-/// The pictures among the inputs and in the folders among them.
-pub(crate) fn find(inputs: &[PathBuf]) -> Result<Inputs, Failure> {
+/// A picture of a command.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Input {
+    pub(crate) path: PathBuf,
+    /// The folder of the picture inside the given one.
+    subfolder: PathBuf,
+    /// The number that a word in the given name replaces.
+    number: Option<String>,
+}
+
+/// Whether the subfolders of a folder are searched too.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Depth {
+    Folder,
+    Subfolders,
+}
+
+impl From<PathBuf> for Input {
+    fn from(path: PathBuf) -> Self {
+        Self { path, ..Self::default() }
+    }
+}
+
+impl Inputs {
+    /// The files of the pictures.
+    pub(crate) fn paths(&self) -> Vec<PathBuf> {
+        self.pictures.iter().map(|input| input.path.clone()).collect()
+    }
+}
+
+/// The pictures among the inputs, those that a word for a number stands for, and those in the folders.
+pub(crate) fn find(inputs: &[PathBuf], depth: Depth) -> Result<Inputs, Failure> {
     let mut found = Inputs::default();
     for input in inputs {
-        if !input.is_dir() {
-            found.pictures.push(input.clone());
+        if input.is_dir() {
+            let before = found.pictures.len();
+            add_folder(input, Path::new(""), depth, &mut found)?;
+            if found.pictures.len() == before {
+                let suffixes = SUFFIXES.join(", ");
+                return Err(Failure::file(
+                    input,
+                    format!("a folder without pictures, expected files that end in {suffixes}"),
+                ));
+            }
             continue;
         }
-        let before = found.pictures.len();
-        add_folder(input, &mut found)?;
-        if found.pictures.len() == before {
-            let suffixes = SUFFIXES.join(", ");
-            return Err(Failure::file(
-                input,
-                format!("a folder without pictures, expected files that end in {suffixes}"),
-            ));
+        // A file of this very name has priority.
+        let pattern = if input.exists() { None } else { NamePattern::of(input)? };
+        match pattern {
+            None => found.pictures.push(input.clone().into()),
+            Some(pattern) => {
+                let tile = |(number, path)| Input { number: Some(number), ..Input::from(path) };
+                found.pictures.extend(pattern.files()?.into_iter().map(tile));
+            }
         }
     }
     Ok(found)
@@ -50,17 +89,33 @@ pub(crate) fn check_there(path: &Path, expected: &str) -> Result<(), Failure> {
     }
 }
 
-fn add_folder(folder: &Path, to: &mut Inputs) -> Result<(), Failure> {
-    let unread = |error| Failure::system(folder, &error, "a folder of pictures");
-    let mut paths = Vec::new();
-    for entry in folder.read_dir().map_err(unread)? {
-        paths.push(entry.map_err(unread)?.path());
+/// Adds the pictures of a folder, or of one inside it.
+fn add_folder(
+    folder: &Path,
+    subfolder: &Path,
+    depth: Depth,
+    to: &mut Inputs,
+) -> Result<(), Failure> {
+    let here = folder.join(subfolder);
+    let unread = |error| Failure::system(&here, &error, "a folder of pictures");
+    let mut entries = Vec::new();
+    for entry in here.read_dir().map_err(unread)? {
+        let entry = entry.map_err(unread)?;
+        // A link to a folder is not followed: it may lead back.
+        entries.push((entry.path(), entry.file_type().map_err(unread)?.is_dir()));
     }
-    paths.retain(|path| !is_hidden(path));
-    paths.sort();
-    for path in paths {
-        let is_picture = !path.is_dir() && is_picture(&path);
-        if is_picture { &mut to.pictures } else { &mut to.left_out }.push(path);
+    entries.retain(|(path, _)| !is_hidden(path));
+    entries.sort();
+    for (path, is_folder) in entries {
+        if is_folder && depth == Depth::Subfolders {
+            let inner = subfolder.join(path.file_name().unwrap_or_default());
+            add_folder(folder, &inner, depth, to)?;
+        } else if !path.is_dir() && is_picture(&path) {
+            let subfolder = subfolder.to_owned();
+            to.pictures.push(Input { path, subfolder, number: None });
+        } else {
+            to.left_out.push(path);
+        }
     }
     Ok(())
 }
@@ -89,33 +144,46 @@ pub(crate) struct Outputs<'a> {
 }
 
 impl Outputs<'_> {
-    /// The files of each input: for a single picture `path`, if it ends in a suffix of pictures and is
-    /// not a folder; otherwise files in the folder `path`, named after the picture and the form, with
-    /// the tile number of a UDIM in its place.
-    pub(crate) fn of(&self, inputs: &[PathBuf]) -> Result<Vec<Vec<PathBuf>>, Failure> {
-        if is_picture(self.path) && !self.path.is_dir() {
-            return match inputs.len() {
-                1 => {
-                    files::check_ending(self.path, &[self.ending])?;
-                    Ok(vec![self.variants_of(self.path)])
-                }
-                count => Err(Failure::file(
-                    self.path,
-                    format!("one file for {count} pictures, expected a folder"),
-                )),
-            };
+    /// The files of each input: `path`, if it ends in a suffix of pictures and is not a folder, for a
+    /// single picture or with a word for the numbers of all; otherwise files in the folder `path`, in the
+    /// subfolder of the picture and named after it and the form, with the tile number of a UDIM in its
+    /// place.
+    pub(crate) fn of(&self, inputs: &[Input]) -> Result<Vec<Vec<PathBuf>>, Failure> {
+        let is_file = is_picture(self.path) && !self.path.is_dir();
+        let pattern = if is_file { NamePattern::of(self.path)? } else { None };
+        if is_file {
+            files::check_ending(self.path, &[self.ending])?;
+        }
+        if is_file && pattern.is_none() && inputs.len() != 1 {
+            let message = format!("one file for {} pictures, expected a folder", inputs.len());
+            return Err(Failure::file(self.path, message));
         }
         let mut outputs = Vec::new();
         let mut taken: HashMap<PathBuf, &PathBuf> = HashMap::new();
         for input in inputs {
-            let files = self.variants_of(&self.path.join(name_of(input, self.form, self.ending)));
+            let output = match &pattern {
+                Some(pattern) => {
+                    let number = input.number.as_ref().ok_or_else(|| {
+                        let word = pattern.word();
+                        let message = format!("no number for {word}, expected inputs with {word}");
+                        Failure::file(self.path, message)
+                    })?;
+                    pattern.with(number)
+                }
+                None if is_file => self.path.to_owned(),
+                None => {
+                    let folder = self.path.join(&input.subfolder);
+                    folder.join(name_of(&input.path, self.form, self.ending))
+                }
+            };
+            let files = self.variants_of(&output);
             for path in &files {
-                if let Some(twin) = taken.insert(path.clone(), input) {
+                if let Some(twin) = taken.insert(path.clone(), &input.path) {
                     let twin = twin.display();
                     let message = format!(
                         "same name as {twin}, expected names that differ without their suffixes"
                     );
-                    return Err(Failure::file(input, message));
+                    return Err(Failure::file(&input.path, message));
                 }
             }
             outputs.push(files);
@@ -147,11 +215,6 @@ fn name_of(input: &Path, word: &str, ending: &str) -> PathBuf {
     }
 }
 
-/// Whether a word is the number of a UDIM tile: four digits, 1001 or greater.
-fn is_udim(word: &str) -> bool {
-    word.len() == 4 && word.parse().is_ok_and(|tile: u32| tile >= 1001)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -167,9 +230,11 @@ mod tests {
 
     #[test]
     fn one_picture_may_have_an_output_file_and_two_need_a_folder() {
-        let one = [PathBuf::from("a.png")];
-        let two = [PathBuf::from("a.png"), PathBuf::from("b.png")];
-        let to = |path, form, inputs: &[PathBuf]| {
+        let inputs = |paths: &[&str]| -> Vec<Input> {
+            paths.iter().map(|path| PathBuf::from(path).into()).collect()
+        };
+        let (one, two) = (inputs(&["a.png"]), inputs(&["a.png", "b.png"]));
+        let to = |path, form, inputs: &[Input]| {
             Outputs { path: Path::new(path), form, ending: "exr", variants: &[] }.of(inputs)
         };
         assert_eq!(to("out.exr", "material", &one), Ok(vec![vec![PathBuf::from("out.exr")]]));
@@ -177,7 +242,7 @@ mod tests {
         assert!(to("out.png", "material", &one).is_err());
         let names = to("out", "radiance", &two).unwrap();
         assert_eq!(names[1], [PathBuf::from("out/b.radiance.exr")]);
-        let twins = [PathBuf::from("x/a.png"), PathBuf::from("y/a.tif")];
+        let twins = inputs(&["x/a.png", "y/a.tif"]);
         assert!(to("out", "radiance", &twins).is_err());
     }
 
@@ -191,7 +256,7 @@ mod tests {
                 ending: "png",
                 variants: &lights,
             };
-            let files = outputs.of(&[input.into()]).unwrap().concat();
+            let files = outputs.of(&[PathBuf::from(input).into()]).unwrap().concat();
             files.iter().map(|path| path.display().to_string()).collect::<Vec<_>>()
         };
         assert_eq!(names("x.png", "a.exr"), ["x.A.png", "x.D65.png"]);
@@ -200,17 +265,61 @@ mod tests {
     }
 
     #[test]
-    fn pictures_of_a_folder_are_sorted() {
+    fn pictures_of_a_folder_are_sorted_and_subfolders_kept() {
         let folder = tempfile::tempdir().unwrap();
-        for name in ["b.EXR", "a.png", "notes.txt", "._a.png", ".hidden.exr"] {
+        std::fs::create_dir_all(folder.path().join("c/d")).unwrap();
+        std::fs::create_dir(folder.path().join(".hidden")).unwrap();
+        let names =
+            ["b.EXR", "a.png", "notes.txt", "._a.png", ".hidden/x.exr", "c/a.png", "c/d/a.jpg"];
+        for name in names {
             std::fs::write(folder.path().join(name), "").unwrap();
         }
-        let found = find(&[folder.path().to_owned()]).unwrap();
-        let names = |paths: &[PathBuf]| -> Vec<String> {
-            let name = |path: &PathBuf| path.file_name().map(|n| n.to_string_lossy().into_owned());
-            paths.iter().filter_map(name).collect()
+        let find = |depth| {
+            let found = find(&[folder.path().to_owned()], depth).unwrap();
+            let inside = |paths: &[PathBuf]| -> Vec<String> {
+                let name = |path: &PathBuf| {
+                    path.strip_prefix(folder.path()).unwrap().display().to_string()
+                };
+                paths.iter().map(name).collect()
+            };
+            let to = Outputs { path: Path::new("o"), form: "f", ending: "exr", variants: &[] };
+            let outputs = to.of(&found.pictures).unwrap().concat();
+            let outputs: Vec<String> = outputs.iter().map(|p| p.display().to_string()).collect();
+            (inside(&found.paths()), inside(&found.left_out), outputs)
         };
-        assert_eq!(names(&found.pictures), ["a.png", "b.EXR"]);
-        assert_eq!(names(&found.left_out), ["notes.txt"]);
+        let (pictures, left_out, _) = find(Depth::Folder);
+        assert_eq!(
+            (pictures, left_out),
+            (
+                ["a.png", "b.EXR"].map(String::from).to_vec(),
+                ["c", "notes.txt"].map(String::from).to_vec(),
+            )
+        );
+        let (pictures, left_out, outputs) = find(Depth::Subfolders);
+        assert_eq!(pictures, ["a.png", "b.EXR", "c/a.png", "c/d/a.jpg"]);
+        assert_eq!(left_out, ["notes.txt"]);
+        assert_eq!(outputs, ["o/a.f.exr", "o/b.f.exr", "o/c/a.f.exr", "o/c/d/a.f.exr"]);
+    }
+
+    #[test]
+    fn a_word_for_numbers_goes_from_the_inputs_to_the_outputs() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["a.1001.png", "a.1002.png", "b.<UDIM>.png", "b.1001.png"] {
+            std::fs::write(folder.path().join(name), "").unwrap();
+        }
+        let find = |name: &str| find(&[folder.path().join(name)], Depth::Folder);
+        let tiles = find("a.<UDIM>.png").unwrap();
+        let to = |path| Outputs { path: Path::new(path), form: "f", ending: "exr", variants: &[] };
+        let names = |path| to(path).of(&tiles.pictures).map(|files| files.concat());
+        let named = ["o/x_1001.exr", "o/x_1002.exr"].map(PathBuf::from);
+        assert_eq!(names("o/x_<UDIM>.exr"), Ok(named.to_vec()));
+        let in_folder = ["o/a.f.1001.exr", "o/a.f.1002.exr"].map(PathBuf::from);
+        assert_eq!(names("o"), Ok(in_folder.to_vec()));
+        assert!(names("x.exr").is_err());
+        // A file of this very name has priority.
+        let literal = find("b.<UDIM>.png").unwrap();
+        assert_eq!(literal.pictures.len(), 1);
+        assert!(to("x.<UDIM>.exr").of(&literal.pictures).is_err());
+        assert!(find("c.<UDIM>.png").is_err());
     }
 }

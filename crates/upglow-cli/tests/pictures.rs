@@ -503,6 +503,31 @@ fn an_update_bakes_what_has_changed() {
 }
 
 #[test]
+fn subfolders_and_numbers_in_names_are_kept() {
+    let folder = desk();
+    for name in ["set/a.1001.exr", "set/a.1002.exr", "set/in/a.1001.exr", "set/in/b.exr"] {
+        picture(&folder, name, 1, &[GRAY], true);
+    }
+    folder.done("bake cube set --recursive -o out");
+    assert!(folder.path().join("out/in/a.material.1001.exr").is_file());
+    assert_eq!(folder.json("check set --recursive")["pictures"].as_array().unwrap().len(), 4);
+    assert_eq!(folder.json("check set")["left_out"], serde_json::json!(["set/in"]));
+    let line = folder.refused(1, "bake cube set --recursive -o set/in/out");
+    assert!(line.starts_with("set/in/out: the folder of the pictures"), "{line}");
+    folder.done("bake cube set/a.<UDIM>.exr -o tiles/b_<UDIM>.exr");
+    assert!(folder.path().join("tiles/b_1002.exr").is_file());
+    assert_eq!(folder.json("check set/a.%04d.exr")["pictures"].as_array().unwrap().len(), 2);
+    let line = folder.refused(1, "check set/c.<UDIM>.exr");
+    let expected = "no file of such a name, expected four digits from 1001 on for <UDIM>";
+    assert_eq!(line, format!("set/c.<UDIM>.exr: {expected}"));
+    let line = folder.refused(1, "bake cube set/in/b.exr -o b.<UDIM>.exr");
+    assert_eq!(line, "b.<UDIM>.exr: no number for <UDIM>, expected inputs with <UDIM>");
+    let text = folder.done("bake cube set -o out2 --space srgb --repair clip");
+    let names = "2 whose files state another space or encoding than declared: set/a.1001.exr, ";
+    assert!(text.contains(names), "{text}");
+}
+
+#[test]
 fn what_is_declared_wins_and_the_report_says_what_was_used() {
     let folder = desk();
     let text = folder.done("bake cube tile.exr -o x.exr --space lin_rec709_scene --repair clip");

@@ -7,6 +7,7 @@ use upglow_image::{Declared, DeclaredAlpha, Encoding, FORMATS, PngBits, Repair, 
 use upglow_terminal::{Threads, word};
 
 use super::values::{PictureSpace, bands, lights, picture_space, position, stops};
+use crate::pictures::Depth;
 
 /// How to interpret pictures.
 #[derive(Clone, Debug, clap::Args)]
@@ -29,9 +30,16 @@ pub(crate) struct PictureArgs {
     /// Layer of OpenEXR files with several: the text before .R in its channels, or the name of its part
     #[arg(long, value_name = "NAME")]
     layer: Option<String>,
+    /// Also read the pictures in the subfolders of given folders; outputs are in the same subfolders
+    #[arg(long)]
+    recursive: bool,
 }
 
 impl PictureArgs {
+    pub(crate) fn depth(&self) -> Depth {
+        if self.recursive { Depth::Subfolders } else { Depth::Folder }
+    }
+
     pub(crate) fn declared(&self) -> Declared {
         let space = self.space.as_ref();
         Declared {
@@ -170,7 +178,10 @@ pub(crate) struct ExamplesArgs {
 }
 
 fn inputs_help() -> String {
-    format!("Pictures, or folders of pictures: {FORMATS}")
+    format!(
+        "Pictures, or folders of pictures: {FORMATS}. In a name, <UDIM> stands for the numbers of tiles, \
+         %04d or #### for those of frames"
+    )
 }
 
 /// What is written for a picture.

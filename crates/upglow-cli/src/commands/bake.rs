@@ -12,9 +12,9 @@ use upglow_image::{
 use upglow_terminal::{Console, Failure, Report};
 
 use crate::args::{BakeArgs, BakeForm, BakeFormat, SampleName};
-use crate::batch::Batch;
+use crate::batch::{Batch, Interpreted};
 use crate::output::Lines;
-use crate::pictures::Outputs;
+use crate::pictures::{Depth, Input, Outputs};
 use crate::{files, pictures, plan};
 
 #[derive(Debug, Serialize)]
@@ -46,7 +46,7 @@ pub(crate) fn run(args: &BakeArgs, console: &Console) -> Result<(), Failure> {
         repair: args.repair,
         sample: args.result.sample.unwrap_or(SampleName::Half).into(),
     };
-    let inputs = pictures::find(&args.inputs)?;
+    let inputs = pictures::find(&args.inputs, args.picture.depth())?;
     let lights: Vec<&str> = forms.iter().filter_map(Form::light).map(Illuminant::name).collect();
     let variants: Vec<String> = if lights.len() > 1 {
         lights.iter().map(|light| in_file_name(light)).collect()
@@ -60,14 +60,14 @@ pub(crate) fn run(args: &BakeArgs, console: &Console) -> Result<(), Failure> {
         variants: &variants,
     };
     let outputs = outputs.of(&inputs.pictures)?;
-    check_outputs(args, &inputs.pictures, &outputs.concat())?;
+    check_outputs(args, &inputs.paths(), &outputs.concat())?;
     let cube = files::read_cube(&args.cube)?;
     let baker = |form: &Form| Baker::new(&cube, form.clone(), options.clone());
     let bakers: Result<Vec<Baker<'_>>, BakeError> = forms.iter().map(baker).collect();
     let bakers = bakers.map_err(|error| refused(error, &args.cube))?;
     let mut batch = Batch::new("baked", &inputs);
     let mut pairs = inputs.pictures.iter().zip(&outputs);
-    let ended = pairs.try_for_each(|(input, outputs)| {
+    let ended = pairs.try_for_each(|(Input { path: input, .. }, outputs)| {
         for (i, (baker, output)) in bakers.iter().zip(outputs).enumerate() {
             if args.update && baker.is_made(input, output) {
                 batch.add_unchanged(input);
@@ -167,7 +167,11 @@ fn in_file_name(light: &str) -> String {
 
 /// Creates the folders of the outputs, and checks all outputs before the first is baked.
 fn check_outputs(args: &BakeArgs, inputs: &[PathBuf], outputs: &[PathBuf]) -> Result<(), Failure> {
-    if args.inputs.iter().any(|input| input.is_dir() && files::is_same(input, &args.output)) {
+    let is_source = |folder: &PathBuf| match args.picture.depth() {
+        Depth::Folder => files::is_same(folder, &args.output),
+        Depth::Subfolders => files::is_inside(&args.output, folder),
+    };
+    if args.inputs.iter().any(|input| input.is_dir() && is_source(input)) {
         let message = "the folder of the pictures, expected another: the next run would bake the \
                        files that this one writes";
         return Err(Failure::file(&args.output, message));
@@ -235,6 +239,16 @@ fn typed() -> String {
     };
     let words = std::env::args_os().skip(1).map(quoted);
     ["upglow".to_owned()].into_iter().chain(words).collect::<Vec<_>>().join(" ")
+}
+
+impl Interpreted for BakeReport {
+    fn interpretation(&self) -> &Interpretation {
+        &self.interpretation
+    }
+
+    fn picture(&self) -> &str {
+        &self.input
+    }
 }
 
 impl Report for BakeReport {

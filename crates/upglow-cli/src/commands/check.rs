@@ -5,13 +5,16 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use upglow::Cube;
 use upglow_color::Contract;
-use upglow_image::{CheckError, CheckReport, Checker, CubeMatch, Flaw, FlawedTexel, WorstTexel};
+use upglow_image::{
+    CheckError, CheckReport, Checker, CubeMatch, Flaw, FlawedTexel, Interpretation, WorstTexel,
+};
 use upglow_terminal::{Console, Failure, Report};
 
 use super::bake::picture_failure;
 use crate::args::CheckArgs;
-use crate::batch::Batch;
+use crate::batch::{Batch, Interpreted};
 use crate::output::Lines;
+use crate::pictures::Input;
 use crate::{files, pictures, plan};
 
 #[derive(Debug, Serialize)]
@@ -24,8 +27,8 @@ struct PictureReport {
 }
 
 pub(crate) fn run(args: &CheckArgs, console: &Console) -> Result<(), Failure> {
-    let inputs = pictures::find(&args.inputs)?;
-    check_outputs(args, &inputs.pictures)?;
+    let inputs = pictures::find(&args.inputs, args.picture.depth())?;
+    check_outputs(args, &inputs.paths())?;
     let cube = args.cube.as_deref().map(files::read_cube).transpose()?;
     let contract = contract(args, cube.as_ref())?;
     let mut checker = Checker::new(contract, args.picture.declared());
@@ -35,7 +38,7 @@ pub(crate) fn run(args: &CheckArgs, console: &Console) -> Result<(), Failure> {
     }
     let mut batch = Batch::new("checked", &inputs);
     let mut found = Vec::new();
-    let ended = inputs.pictures.iter().try_for_each(|input| {
+    let ended = inputs.pictures.iter().try_for_each(|Input { path: input, .. }| {
         match console.work(args.threads, |bar| checker.check(input, bar))? {
             Ok(report) => found.push(report),
             Err(error) => batch.add_failure(input, failure(error, input))?,
@@ -98,6 +101,16 @@ fn contract(args: &CheckArgs, cube: Option<&Cube>) -> Result<Contract, Failure> 
 /// Red, green and blue with four decimals, the precision of half floats.
 fn rgb_text([r, g, b]: [f32; 3]) -> String {
     format!("{r:.4}, {g:.4}, {b:.4}")
+}
+
+impl Interpreted for PictureReport {
+    fn interpretation(&self) -> &Interpretation {
+        &self.found.interpretation
+    }
+
+    fn picture(&self) -> &str {
+        &self.found.file
+    }
 }
 
 impl Report for PictureReport {

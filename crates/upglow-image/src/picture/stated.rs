@@ -103,6 +103,13 @@ pub struct Interpretation {
     pub alpha: &'static str,
 }
 
+impl Interpretation {
+    /// Whether the file states another RGB space or encoding than was declared.
+    pub fn is_overruled(&self) -> bool {
+        self.space.overruled.is_some() || self.encoding.overruled.is_some()
+    }
+}
+
 impl fmt::Display for Word {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { used, by, overruled } = self;
