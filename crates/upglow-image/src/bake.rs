@@ -226,7 +226,7 @@ impl<'c> Baker<'c> {
     /// pool. The file is replaced only once it is complete, and its bytes do not depend on the number of
     /// threads.
     ///
-    /// Memory: that of [`Picture`], a band of at most 20 MiB in single precision and twice in that of the
+    /// Memory: that of [`Picture`] for two bands, a band of at most 20 MiB in single precision and twice in that of the
     /// file, and one block of 16 rows (one row in spectral files).
     ///
     /// # Errors

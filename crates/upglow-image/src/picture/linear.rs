@@ -63,23 +63,27 @@ impl LinearPicture {
         });
     }
 
-    /// Passes the bands of the rest of the picture to `act`, each of about `rows` rows, and reports
-    /// progress to `watch` after each.
-    pub(crate) fn for_each_band<E: From<PictureError> + From<Stopped>>(
+    /// Passes the bands of the rest of the picture to `act` in their order, each of about `rows` rows, and
+    /// reports progress to `watch` after each. While one is acted on, the next is read: few formats can be
+    /// decoded by several threads.
+    pub(crate) fn for_each_band<E: From<PictureError> + From<Stopped> + Send>(
         &mut self,
         rows: usize,
         stage: &'static str,
         watch: &dyn Watch,
-        mut act: impl FnMut(Band) -> Result<(), E>,
+        mut act: impl FnMut(Band) -> Result<(), E> + Send,
     ) -> Result<(), E> {
         let [_, total] = self.picture.size();
-        while let Some(band) = self.read_band(rows)? {
+        let mut next = self.read_band(rows)?;
+        while let Some(band) = next {
             if watch.stopped() {
                 return Err(Stopped.into());
             }
             let done = band.first_row + band.rows();
-            act(band)?;
+            let (acted, read) = rayon::join(|| act(band), || self.read_band(rows));
+            acted?;
             watch.progress(Progress { stage, done, total });
+            next = read?;
         }
         Ok(())
     }
