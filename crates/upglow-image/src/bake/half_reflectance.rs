@@ -156,7 +156,9 @@ mod tests {
         ) {
             let distance = sign * 10_f64.powf(magnitude);
             // The slope at which the edge still has an effect near visible light.
-            let slope_per_nm = rise * 0.01_f64.min(2.0 / distance.abs());
+            let slope = rise * 0.01_f64.min(2.0 / distance.abs());
+            // Materials are stored in single precision.
+            let slope_per_nm = f64::from(to_single(slope));
             let edge = Edge { edge_nm: 550.0 + distance, level, slope_per_nm };
             let stored = restored(in_half(edge));
             prop_assert!(stored.slope_per_nm.abs() <= slope_per_nm.abs());
