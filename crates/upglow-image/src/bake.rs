@@ -124,6 +124,16 @@ pub struct Baked {
     pub bytes: u64,
 }
 
+impl Baked {
+    /// Most channels of a file that `OpenImageIO` reads, and with it most renderers.
+    pub const OPENIMAGEIO_CHANNELS: usize = 1024;
+
+    /// Whether `OpenImageIO` refuses the file for its number of channels.
+    pub fn is_beyond_openimageio(&self) -> bool {
+        self.channels > Self::OPENIMAGEIO_CHANNELS
+    }
+}
+
 /// Why a picture was not baked.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]

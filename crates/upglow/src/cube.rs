@@ -8,7 +8,7 @@ use upglow_color::{Contract, LinearRgb, NameError};
 pub(crate) mod coefficient_table;
 pub(crate) mod error;
 pub(crate) mod file;
-mod header;
+pub(crate) mod header;
 pub(crate) mod interpolation;
 mod plain_json;
 

@@ -45,6 +45,7 @@ pub use aside::Aside;
 pub use bispectral::{Bispectral, Draw, Sample};
 pub use cube::coefficient_table::{CoefficientTable, CoefficientTableError};
 pub use cube::error::{CubeFileError, ReadCubeError};
+pub use cube::header::CubeCurves;
 pub use cube::interpolation::Interpolation;
 pub use cube::{Cube, CubeError, FitRecord, FitRecordError, LookupError, Node, NodeError};
 pub use material::analytic_model::AnalyticModel;

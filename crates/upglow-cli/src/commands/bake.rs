@@ -7,13 +7,14 @@ use serde::Serialize;
 use upglow_color::{Choice, Grid, Illuminant};
 use upglow_fit::KindCounts;
 use upglow_image::{
-    BakeError, BakeOptions, Baker, DeclaredAlpha, Form, Interpretation, Missing, PictureError,
+    BakeError, BakeOptions, Baked, Baker, DeclaredAlpha, Form, Interpretation, Missing,
+    PictureError,
 };
 use upglow_terminal::{Console, Failure, Report};
 
 use crate::args::{BakeArgs, BakeForm, BakeFormat, SampleName};
 use crate::batch::{Batch, Interpreted};
-use crate::output::Lines;
+use crate::output::{Lines, warn};
 use crate::pictures::{Depth, Input, Outputs};
 use crate::{files, pictures, plan};
 
@@ -27,6 +28,8 @@ struct BakeReport {
     width: usize,
     height: usize,
     channels: usize,
+    /// Whether `OpenImageIO` refuses the file for its number of channels.
+    beyond_openimageio: bool,
     /// Texels that `--repair` changed.
     repaired: u64,
     /// Texels of a PNG whose colors are outside sRGB, and are shown grayer.
@@ -79,6 +82,14 @@ pub(crate) fn run(args: &BakeArgs, console: &Console) -> Result<(), Failure> {
                 // Under another light the picture would fail alike.
                 Err(error) => return batch.add_failure(input, failure(error, input, output)),
             };
+            if baked.is_beyond_openimageio() {
+                let (file, most) = (output.display(), Baked::OPENIMAGEIO_CHANNELS);
+                let channels = baked.channels;
+                warn(format_args!(
+                    "{file}: {channels} channels, OpenImageIO reads at most {most}; give wider --bands \
+                     or --compact"
+                ));
+            }
             let report = BakeReport {
                 input: input.display().to_string(),
                 file: output.display().to_string(),
@@ -87,6 +98,7 @@ pub(crate) fn run(args: &BakeArgs, console: &Console) -> Result<(), Failure> {
                 width: baked.size[0],
                 height: baked.size[1],
                 channels: baked.channels,
+                beyond_openimageio: baked.is_beyond_openimageio(),
                 repaired: baked.repaired,
                 beyond_screen: (format == BakeFormat::Png).then_some(baked.beyond_screen),
                 kinds: baked.kinds,

@@ -1,14 +1,17 @@
 //! Attributes of baked files that describe the cube they were made with.
 
-use upglow::{Cube, Node};
+use upglow::{Cube, CubeCurves, ReadCubeError};
+use upglow_color::Grid;
 
 use crate::exr::attribute::{Attribute, Attributes, chromaticities};
+use crate::picture::interop::InteropSpace;
+use crate::spectral::attribute_spectrum::{parse_spectrum, print_spectrum};
 use crate::spectral::channel::{LAYOUT_VERSION, LAYOUT_VERSION_VALUE};
+use crate::spectral::error::FormError;
+use crate::spectral::stated::stated;
 
 /// The header of the cube as JSON: contract, model, fit.
 pub(super) const HEADER: &str = "upglow.header";
-/// A cube file of two empty nodes per side: the same contract, model and curves, for programs.
-pub(super) const MODEL: &str = "upglow.model";
 /// Name of the form: material, spectral or radiance.
 pub(super) const FORM: &str = "upglow.form";
 /// What the channels hold, in words.
@@ -17,35 +20,110 @@ pub(super) const CHANNELS: &str = "upglow.channels";
 /// A hash of everything that made the file.
 pub(super) const MADE: &str = "upglow.made";
 
+/// The attribute of earlier versions in place of the curves: a cube file without materials.
+const MODEL: &str = "upglow.model";
 const MODEL_KIND: &str = "upglowCube";
 
+/// The attribute of the Color Interop Forum that names the color space of a file's color channels.
+pub(crate) const INTEROP_ID: &str = "colorInteropID";
+
 /// The attributes of every form.
-pub(super) fn common(cube: &Cube, form: &str, channels: &str) -> Attributes {
+fn common(cube: &Cube, form: &str, channels: &str) -> Attributes {
     Attributes::from([
-        ("chromaticities".to_owned(), chromaticities(&cube.contract().space)),
         (HEADER.to_owned(), cube.header_json().into()),
         (FORM.to_owned(), form.into()),
         (CHANNELS.to_owned(), channels.into()),
     ])
 }
 
-/// The attributes of both spectral forms.
+/// The attributes of a file whose channels are no colors.
+pub(super) fn data(cube: &Cube, form: &str, channels: &str) -> Attributes {
+    let mut attributes = common(cube, form, channels);
+    attributes.insert(INTEROP_ID.into(), InteropSpace::DATA.into());
+    attributes
+}
+
+/// The attributes of a file with colors in the cube's space, linear: the space by its name in the Color
+/// Interop Forum, or by its chromaticities if it has none. Both together would be two statements.
+pub(super) fn colors(cube: &Cube, form: &str, channels: &str) -> Attributes {
+    let mut attributes = common(cube, form, channels);
+    let space = &cube.contract().space;
+    match InteropSpace::linear_id(space) {
+        Some(id) => attributes.insert(INTEROP_ID.into(), id.into()),
+        None => attributes.insert("chromaticities".into(), chromaticities(space)),
+    };
+    attributes
+}
+
+/// The attributes of both spectral forms, which have a preview in color.
 pub(super) fn spectral(cube: &Cube, channels: &str) -> Attributes {
-    let mut attributes = common(cube, "spectral", channels);
+    let mut attributes = colors(cube, "spectral", channels);
     attributes.insert(LAYOUT_VERSION.into(), LAYOUT_VERSION_VALUE.into());
     attributes
 }
 
-/// The contract, model and curves of a cube without its materials.
-pub(super) fn model(cube: &Cube) -> Attribute {
-    let [least, _] = Cube::RESOLUTIONS;
-    let nodes = vec![Node::default(); least.pow(3)];
-    let (contract, model) = (cube.contract().clone(), cube.model().clone());
-    let empty = Cube::new(contract, model, cube.fit().clone(), least, nodes);
-    Attribute::new(MODEL_KIND, empty.expect("empty nodes fit any model").to_bytes())
+/// The light's curve, in [`curves`].
+const LIGHT: &str = "upglow.curve.light";
+
+/// The observer's curves, in [`curves`].
+const OBSERVER: [&str; 3] =
+    ["upglow.curve.observer.x", "upglow.curve.observer.y", "upglow.curve.observer.z"];
+
+/// The names of a dye's curves, in [`curves`], by its index as in the channels.
+fn dye_curves(dye: usize) -> [String; 2] {
+    ["absorption", "emission"].map(|what| format!("upglow.curve.dye.{dye}.{what}"))
 }
 
-/// The cube without materials that [`model`] stored; `None` if it is absent or damaged.
-pub(super) fn read_model(attributes: &Attributes) -> Option<Cube> {
-    Cube::from_bytes(attributes.get(MODEL)?.of_kind(MODEL_KIND)?).ok()
+/// The curves that the header names, as text, because programs that copy a file drop attributes of types
+/// that they do not know.
+pub(super) fn curves(cube: &Cube) -> Attributes {
+    let nm: Vec<f64> = Grid::FINE.wavelengths_nm().collect();
+    let text = |values: &[f64]| Attribute::from(print_spectrum(&nm, values));
+    let CubeCurves { illuminant, observer, dyes } = cube.curves();
+    let mut curves = Attributes::from([(LIGHT.to_owned(), text(&illuminant))]);
+    for (name, values) in OBSERVER.iter().zip(observer.iter().flatten()) {
+        curves.insert((*name).into(), text(values));
+    }
+    for (i, dye) in dyes.iter().enumerate() {
+        curves.extend(dye_curves(i).into_iter().zip(dye.iter().map(|values| text(values))));
+    }
+    curves
 }
+
+/// The contract and model of the cube that a file was made with, without its materials.
+///
+/// # Errors
+///
+/// [`FormError`] if they are absent or damaged.
+pub(super) fn read_model(attributes: &Attributes) -> Result<Cube, FormError> {
+    let damaged = |name: &str, error: &ReadCubeError| FormError::Attribute {
+        name: name.into(),
+        found: format!("damaged: {error}"),
+        expected: EXPECTED.into(),
+    };
+    if let Some(file) = attributes.get(MODEL).and_then(|model| model.of_kind(MODEL_KIND)) {
+        return Cube::from_bytes(file).map_err(|error| damaged(MODEL, &error));
+    }
+    let header = stated(attributes, HEADER, EXPECTED, |text| Some(text.to_owned()))?;
+    let curve = |name: &str| {
+        const EXPECTED: &str = "531 numbers as 300nm:0.5;301nm:0.6;";
+        stated(attributes, name, EXPECTED, |text| {
+            let (nm, values) = parse_spectrum(text)?;
+            nm.into_iter().eq(Grid::FINE.wavelengths_nm()).then_some(values)
+        })
+    };
+    let [x, y, z] = OBSERVER.map(curve);
+    let mut curves =
+        CubeCurves { illuminant: curve(LIGHT)?, observer: Some([x?, y?, z?]), dyes: Vec::new() };
+    loop {
+        let [absorption, emission] = dye_curves(curves.dyes.len());
+        if !attributes.contains_key(&absorption) {
+            break;
+        }
+        curves.dyes.push([curve(&absorption)?, curve(&emission)?]);
+    }
+    Cube::without_materials(&header, curves).map_err(|error| damaged(HEADER, &error))
+}
+
+/// Where the attributes of materials come from.
+const EXPECTED: &str = "a file of `upglow bake --as material`";

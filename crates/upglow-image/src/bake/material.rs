@@ -49,9 +49,13 @@ pub(super) fn channel_names(model: &Model) -> impl Iterator<Item = &'static str>
     REFLECTANCE.into_iter().chain(fluorescence.iter().copied())
 }
 
+/// The name of the form.
+pub(super) const MATERIAL: &str = "material";
+
 /// What the channels hold.
 const CHANNELS: &str = "one material a texel, as docs/material-exr.md of upglow describes: \
-                        reflectance by its steepest point, and the fluorescence of upglow.model; \
+                        reflectance by its steepest point, and the fluorescence of the model in \
+                        upglow.header; \
                         neighbors must not be averaged";
 
 impl<'c> MaterialMaker<'c> {
@@ -73,8 +77,8 @@ impl Maker for MaterialMaker<'_> {
     }
 
     fn attributes(&self) -> Attributes {
-        let mut attributes = attributes::common(self.cube, "material", CHANNELS);
-        attributes.insert(attributes::MODEL.into(), attributes::model(self.cube));
+        let mut attributes = attributes::data(self.cube, MATERIAL, CHANNELS);
+        attributes.extend(attributes::curves(self.cube));
         let way = if self.is_polished { "polished" } else { "interpolated" };
         attributes.insert("upglow.way".into(), way.into());
         attributes

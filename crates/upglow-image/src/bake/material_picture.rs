@@ -5,8 +5,9 @@ use std::path::Path;
 
 use upglow::{Cube, Material, Model};
 
-use super::attributes::{MODEL, read_model};
-use super::material::{MOST_CHANNELS, channel_names, node_of};
+use super::Form;
+use super::attributes::read_model;
+use super::material::{MATERIAL, MOST_CHANNELS, channel_names, node_of};
 use crate::exr::reader::ExrReader;
 use crate::spectral::error::FormError;
 
@@ -22,7 +23,7 @@ pub struct MaterialPicture {
 impl MaterialPicture {
     /// Whether the attributes of a file say that it holds materials.
     pub fn is_stated(reader: &ExrReader) -> bool {
-        reader.attributes().contains_key(MODEL)
+        Form::stated(reader) == Some(MATERIAL)
     }
 
     /// Opens a file.
@@ -32,11 +33,7 @@ impl MaterialPicture {
     /// [`FormError`] if it cannot be read or holds no materials.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, FormError> {
         let reader = ExrReader::open(path)?;
-        let cube = read_model(reader.attributes()).ok_or_else(|| FormError::Attribute {
-            name: MODEL.into(),
-            found: "absent or damaged".into(),
-            expected: "a file of `upglow bake --as material`".into(),
-        })?;
+        let cube = read_model(reader.attributes())?;
         let names = channel_names(cube.model());
         let channels = names.map(|name| reader.channel(name)).collect::<Result<_, _>>()?;
         Ok(Self { reader, cube, channels })

@@ -61,7 +61,7 @@ impl Maker for RadianceMaker<'_> {
     }
 
     fn attributes(&self) -> Attributes {
-        let mut attributes = attributes::common(self.cube, "radiance", CHANNELS);
+        let mut attributes = attributes::colors(self.cube, "radiance", CHANNELS);
         let white = Attribute::singles("v3f", &self.white.map(to_single));
         attributes.insert("upglow.light".into(), self.light.name().into());
         attributes.insert("upglow.white".into(), white);

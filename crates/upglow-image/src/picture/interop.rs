@@ -39,10 +39,19 @@ pub enum InteropSpace {
 }
 
 impl InteropSpace {
+    /// The name of [`InteropSpace::Data`].
+    pub(crate) const DATA: &str = "data";
+
+    /// The name of linear colors in an RGB space, if it has one.
+    pub(crate) fn linear_id(space: &RgbSpace) -> Option<&'static str> {
+        let linear = Some(Self::Color(space.clone(), Encoding::Linear));
+        IDS.into_iter().find(|id| Self::of_id(id) == linear)
+    }
+
     /// The meaning of a name; `None` for other texts.
     pub fn of_id(id: &str) -> Option<Self> {
         match id {
-            "data" => return Some(Self::Data),
+            Self::DATA => return Some(Self::Data),
             "unknown" => return Some(Self::Unknown),
             _ => {}
         }
@@ -90,6 +99,19 @@ mod tests {
         assert_eq!(InteropSpace::of_id("data"), Some(InteropSpace::Data));
         assert_eq!(InteropSpace::of_id("srgb_ap0_scene"), None);
         assert_eq!(InteropSpace::of_id("studio:lin_ap1_scene"), None);
+    }
+
+    #[test]
+    fn linear_spaces_have_the_ids_that_name_them() {
+        for (name, id) in [
+            ("acescg", Some("lin_ap1_scene")),
+            ("aces2065-1", Some("lin_ap0_scene")),
+            ("srgb", Some("lin_rec709_scene")),
+            ("rec2020", Some("lin_rec2020_scene")),
+            ("xyz", None),
+        ] {
+            assert_eq!(InteropSpace::linear_id(&RgbSpace::named(name).unwrap()), id, "{name}");
+        }
     }
 
     #[test]

@@ -3,16 +3,15 @@
 //! `docs/spectral-exr.md` specifies it for other programs.
 
 mod dye;
-mod stated;
 
 use upglow::{Accounting, Bispectral, DyeModel, FilmModel, Fluorescence, Mixing, Mixture};
 use upglow_color::rounding::to_single;
 use upglow_color::{Grid, choices};
 
 use self::dye::{CompactDye, curve};
-use self::stated::{choice, stated};
 use super::channel::SpectralChannel;
 use super::error::FormError;
+use super::stated::{choice, stated};
 use crate::exr::attribute::Attributes;
 
 /// The meaning of the maps beside the reflectances.

@@ -8,11 +8,11 @@ use std::path::Path;
 
 use safetensors::{Dtype, SafeTensors, View};
 use sha2::{Digest, Sha256};
-use upglow_color::Grid;
+use upglow_color::{Grid, Spectrum};
 
 use crate::aside::Aside;
 use crate::cube::error::{CubeFileError, ReadCubeError};
-use crate::cube::header::{ENTRY, Header, StoredCurves};
+use crate::cube::header::{CubeCurves, ENTRY, Header};
 use crate::cube::plain_json::PlainJson;
 use crate::cube::{Cube, CubeError, Node};
 use crate::material::model::Model;
@@ -95,6 +95,33 @@ impl Cube {
         self.header_of(&self.tensors())
     }
 
+    /// The curves that the header names.
+    pub fn curves(&self) -> CubeCurves {
+        let values = |curve: &Spectrum| curve.values().to_vec();
+        let dyes = self.model().dyes().map_or(&[][..], |model| model.set().dyes());
+        CubeCurves {
+            illuminant: values(self.contract().illuminant.power()),
+            observer: Some(self.contract().observer.matching().each_ref().map(values)),
+            dyes: dyes.iter().map(|dye| [&dye.absorption, &dye.emission].map(values)).collect(),
+        }
+    }
+
+    /// A cube with this header and curves and the least resolution, all of whose materials are those of
+    /// [`Node::default`].
+    ///
+    /// # Errors
+    ///
+    /// [`ReadCubeError`] if they are not those of a cube.
+    pub fn without_materials(header: &str, curves: CubeCurves) -> Result<Self, ReadCubeError> {
+        let header = Header::parse(header)?;
+        ReadCubeError::check("dyes", &curves.dyes.len(), &header.model.dye_count())?;
+        let contract = header.contract.to_contract(curves.illuminant, curves.observer)?;
+        let model = header.model.to_model(curves.dyes)?;
+        let [least, _] = Self::RESOLUTIONS;
+        let nodes = vec![Node::default(); least.pow(3)];
+        Ok(Self::new(contract, model, header.fit, least, nodes)?)
+    }
+
     fn header_of(&self, tensors: &[Tensor]) -> String {
         let names = tensors.iter().map(|t| t.name.to_owned()).collect();
         serde_json::to_string(&Header::of(self, names)).expect("plain data")
@@ -116,30 +143,23 @@ impl Cube {
         let (one, three) = ([n, n, n], [n, n, n, 3]);
         let nodes = || self.nodes().iter();
         let fine = Grid::FINE.len();
-        let power = self.contract().illuminant.power().values();
-        let matching = self.contract().observer.matching();
+        let curves = self.curves();
+        let matching = curves.observer.iter().flatten();
         let mut tensors = vec![
             Tensor::singles(REFLECTANCE, &three, nodes().flat_map(|node| node.reflectance)),
             Tensor::singles(DE2000, &one, nodes().map(|node| node.de2000)),
-            Tensor::doubles(ILLUMINANT, &[fine], power.iter()),
-            Tensor::doubles(
-                OBSERVER,
-                &[matching.len(), fine],
-                matching.iter().flat_map(|curve| curve.values()),
-            ),
+            Tensor::doubles(ILLUMINANT, &[fine], curves.illuminant.iter()),
+            Tensor::doubles(OBSERVER, &[3, fine], matching.flatten()),
         ];
         if !matches!(self.model(), Model::Reflectance) {
             let fluorescence = nodes().flat_map(|node| node.fluorescence);
             tensors.push(Tensor::singles(FLUORESCENCE, &three, fluorescence));
         }
-        if let Some(model) = self.model().dyes() {
+        if !curves.dyes.is_empty() {
             let dyes = nodes().flat_map(|node| node.dyes).collect();
             tensors.push(Tensor::bytes(DYES, &[n, n, n, 2], dyes));
-            let set = model.set().dyes();
-            let curves = set
-                .iter()
-                .flat_map(|dye| dye.absorption.values().iter().chain(dye.emission.values()));
-            tensors.push(Tensor::doubles(DYE_CURVES, &[set.len(), 2, fine], curves));
+            let samples = curves.dyes.iter().flatten().flatten();
+            tensors.push(Tensor::doubles(DYE_CURVES, &[curves.dyes.len(), 2, fine], samples));
         }
         tensors
     }
@@ -302,7 +322,7 @@ fn triples(bytes: &[u8]) -> Vec<[f32; 3]> {
     singles(bytes).collect::<Vec<_>>().as_chunks().0.to_vec()
 }
 
-fn read_curves(file: &SafeTensors<'_>, header: &Header) -> Result<StoredCurves, ReadCubeError> {
+fn read_curves(file: &SafeTensors<'_>, header: &Header) -> Result<CubeCurves, ReadCubeError> {
     let fine = Grid::FINE.len();
     let illuminant = doubles(tensor(file, ILLUMINANT, Dtype::F64, &[fine])?);
     let observer = if header.holds_observer() {
@@ -311,7 +331,7 @@ fn read_curves(file: &SafeTensors<'_>, header: &Header) -> Result<StoredCurves, 
     } else {
         None
     };
-    Ok(StoredCurves { illuminant, observer, dyes: read_dyes(file, header.model.dye_count())? })
+    Ok(CubeCurves { illuminant, observer, dyes: read_dyes(file, header.model.dye_count())? })
 }
 
 /// Absorption and emission of each dye.
@@ -362,7 +382,7 @@ mod tests {
     use crate::material::dye_model::{DyeModel, DyeOptions};
     use crate::material::dye_set::DyeSet;
     use proptest::prelude::*;
-    use upglow_color::{Contract, Observer, Spectrum};
+    use upglow_color::{Contract, Observer};
 
     fn cube() -> Cube {
         let set = DyeSet::named("open8").unwrap();
@@ -385,6 +405,9 @@ mod tests {
         let back = Cube::from_bytes(&bytes).unwrap();
         assert_eq!(back, cube);
         assert_eq!(back.to_bytes(), bytes);
+        let empty = Cube::without_materials(&cube.header_json(), cube.curves()).unwrap();
+        assert_eq!((empty.contract(), empty.model()), (cube.contract(), cube.model()));
+        assert!(Cube::without_materials(&cube.header_json(), CubeCurves::default()).is_err());
     }
 
     /// A cube of the standard observer with samples edited by their index and value.

@@ -96,14 +96,15 @@ pub(crate) struct DyeHeader {
     provenance: String,
 }
 
-/// The curves that the header names and the file's tensors hold.
-pub(crate) struct StoredCurves {
-    /// Power of the illuminant on [`Grid::FINE`].
-    pub(crate) illuminant: Vec<f64>,
-    /// Color-matching functions on [`Grid::FINE`], where the file holds any.
-    pub(crate) observer: Option<[Vec<f64>; 3]>,
-    /// Absorption and emission of each dye on [`Grid::FINE`].
-    pub(crate) dyes: Vec<[Vec<f64>; 2]>,
+/// The curves that the header of a cube names, each on [`Grid::FINE`].
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CubeCurves {
+    /// Power of the illuminant.
+    pub illuminant: Vec<f64>,
+    /// Color-matching functions; `None` in files of version 1, which have CIE 1931 2°.
+    pub observer: Option<[Vec<f64>; 3]>,
+    /// Absorption and emission of each dye, in the order of the set.
+    pub dyes: Vec<[Vec<f64>; 2]>,
 }
 
 const fn grid_numbers(grid: Grid) -> [u32; 3] {

@@ -1,9 +1,9 @@
 //! One dye of the compact form, and its attributes.
 
-use super::stated::stated;
 use crate::exr::attribute::{Attribute, Attributes};
 use crate::spectral::attribute_spectrum::{parse_spectrum, print_spectrum};
 use crate::spectral::error::FormError;
+use crate::spectral::stated::stated;
 
 /// One dye on the bands of a file.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,4 +1,4 @@
-//! Checked reading of attributes of the compact form.
+//! Checked reading of attributes.
 
 use upglow_color::Choice;
 
@@ -6,7 +6,7 @@ use crate::exr::attribute::Attributes;
 use crate::spectral::error::FormError;
 
 /// Reads attribute `name` with `parse`, which returns `None` for text that is not as `expected`.
-pub(super) fn stated<T>(
+pub(crate) fn stated<T>(
     attributes: &Attributes,
     name: &str,
     expected: &str,
@@ -26,7 +26,7 @@ pub(super) fn stated<T>(
 }
 
 /// Reads the value of an option.
-pub(super) fn choice<C: Choice>(attributes: &Attributes, name: &str) -> Result<C, FormError> {
+pub(crate) fn choice<C: Choice>(attributes: &Attributes, name: &str) -> Result<C, FormError> {
     let names: Vec<&str> = C::ALL.iter().map(|choice| choice.name()).collect();
     let parse = |word: &str| C::ALL.iter().copied().find(|choice| choice.name() == word);
     stated(attributes, name, &names.join(" or "), parse)
