@@ -40,6 +40,8 @@ mod check;
 mod example_pictures;
 mod exr;
 mod picture;
+#[cfg(test)]
+mod python;
 mod spectral;
 
 pub use bake::material_picture::MaterialPicture;

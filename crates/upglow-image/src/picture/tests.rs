@@ -14,6 +14,7 @@ use super::stated::{Declared, DeclaredAlpha};
 
 mod hdr_kinds;
 mod jpeg_kinds;
+mod other_programs;
 mod png_kinds;
 mod shared_pictures;
 mod stated_colors;

@@ -23,6 +23,7 @@ use crate::exr::header::Sample;
 use crate::exr::reader::ExrReader;
 use crate::exr::writer::{ExrDescription, ExrWriter};
 use crate::picture::stated::Declared;
+use crate::python::python;
 
 const SIZE: [usize; 2] = [3, 2];
 
@@ -205,24 +206,12 @@ fn attributes_are_linted_too() {
     assert_eq!(found.len(), 1);
 }
 
-/// A Python interpreter with the packages that read our files, if there is one.
-fn python() -> Option<PathBuf> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let candidates = [
-        std::env::var_os("UPGLOW_PYTHON").map(PathBuf::from),
-        Some(root.join("target/python/bin/python")),
-        Some("python3".into()),
-    ];
-    let can_import = |python: &PathBuf| {
-        let mut command = Command::new(python);
-        command.args(["-c", "import OpenEXR, numpy"]).output().is_ok_and(|o| o.status.success())
-    };
-    candidates.into_iter().flatten().find(can_import)
-}
+/// The packages that read our files.
+const READERS: &str = "OpenEXR, numpy";
 
 #[test]
 fn other_programs_read_our_files() {
-    let Some(python) = python() else {
+    let Some(python) = python(READERS) else {
         println!("skipped: other_programs_read_our_files, no python3 with OpenEXR and numpy");
         return;
     };
@@ -304,7 +293,7 @@ fn samples(path: &Path) -> String {
 
 #[test]
 fn other_programs_read_baked_materials_and_light() {
-    let Some(python) = python() else {
+    let Some(python) = python(READERS) else {
         println!("skipped: other_programs_read_baked_materials_and_light, no python3 with OpenEXR");
         return;
     };
@@ -323,7 +312,7 @@ fn other_programs_read_baked_materials_and_light() {
 
 #[test]
 fn colour_science_integrates_a_baked_reflectance_to_our_color() {
-    let Some(python) = python() else {
+    let Some(python) = python(READERS) else {
         println!("skipped: colour_science_integrates_a_baked_reflectance_to_our_color, no python3");
         return;
     };
