@@ -153,8 +153,7 @@ impl Picture {
         self.facts.windows
     }
 
-    /// The next rows: `rows`, rounded up to whole blocks of the file, or fewer at the end of the picture;
-    /// `None` after the last row.
+    /// The next rows, fewer at the end of the picture; `None` after the last row.
     ///
     /// # Errors
     ///
@@ -164,8 +163,7 @@ impl Picture {
         if self.next_row >= height {
             return Ok(None);
         }
-        let whole = rows.max(1).next_multiple_of(self.facts.block_rows);
-        let rows = self.next_row..height.min(self.next_row.saturating_add(whole));
+        let rows = self.next_row..height.min(self.next_row.saturating_add(rows.max(1)));
         let first_row = self.next_row;
         self.next_row = rows.end;
         let (rgb, last_sample) = self.source.read(rows)?;

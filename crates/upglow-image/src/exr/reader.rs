@@ -27,6 +27,8 @@ pub struct ExrReader {
     blocks: Blocks,
     /// Position of the table of blocks, bytes.
     table: u64,
+    /// Decompressed blocks of which further rows follow those that were read last.
+    kept: Vec<(Block, Vec<u8>)>,
     /// Number of the part, which each block of a multi-part file repeats.
     part: Option<i32>,
 }
@@ -83,7 +85,16 @@ impl ExrReader {
         }
         let table = end + counts[..index].iter().sum::<u64>() * 8;
         let part = multi_part.then(|| i32::try_from(index).unwrap_or(i32::MAX));
-        Ok(Self { file, length, unpacker: Unpacker::new(&header), header, blocks, table, part })
+        Ok(Self {
+            file,
+            length,
+            unpacker: Unpacker::new(&header),
+            header,
+            blocks,
+            table,
+            kept: Vec::new(),
+            part,
+        })
     }
 
     /// Width and height of the data window, pixels; 1 or more.
@@ -111,7 +122,7 @@ impl ExrReader {
         [self.header.data, self.header.display]
     }
 
-    /// Rows of a block. Reading fewer rows at a time decompresses blocks repeatedly.
+    /// Rows of a block.
     pub fn block_rows(&self) -> usize {
         self.blocks.block_size()[1]
     }
@@ -145,7 +156,8 @@ impl ExrReader {
     /// Some columns of some rows: for each requested channel, its samples row by row.
     ///
     /// Rows and columns count from the first of the data window. Only the blocks that the region
-    /// touches are read; they are decompressed on all cores.
+    /// touches are read; they are decompressed on all cores. Those of which only the first rows are read
+    /// are kept for a next call that continues there.
     ///
     /// # Errors
     ///
@@ -164,7 +176,21 @@ impl ExrReader {
         let places = channels.iter().map(|&c| self.place(c)).collect::<Result<Vec<_>, _>>()?;
         let (region, pixel) = (Region { columns, rows }, pixel_bytes(&self.header));
         let mut planes = vec![vec![0.0; region.columns.len() * region.rows.len()]; channels.len()];
-        for group in self.block_groups(&region) {
+        let is_cut = |block: &Block| block.origin[1] + block.size[1] > region.rows.end;
+        let mut copy = |block: Block, bytes: &[u8]| {
+            for (plane, place) in planes.iter_mut().zip(&places) {
+                region.copy((block, bytes), pixel, *place, plane);
+            }
+        };
+        let mut groups = self.block_groups(&region);
+        let mut kept = std::mem::take(&mut self.kept);
+        kept.retain(|(block, _)| groups.iter().flatten().any(|wanted| wanted == block));
+        kept.iter().for_each(|(block, bytes)| copy(*block, bytes));
+        for group in &mut groups {
+            group.retain(|block| kept.iter().all(|(known, _)| known != block));
+        }
+        kept.retain(|(block, _)| is_cut(block));
+        for group in groups {
             let packed = group
                 .into_iter()
                 .map(|block| Ok((block, self.packed(block)?)))
@@ -174,11 +200,13 @@ impl ExrReader {
                 .map(|(block, bytes)| Ok((block, self.unpack(block, bytes)?)))
                 .collect::<Result<Vec<_>, ExrError>>()?;
             for (block, bytes) in unpacked {
-                for (plane, place) in planes.iter_mut().zip(&places) {
-                    region.copy((block, &bytes), pixel, *place, plane);
+                copy(block, &bytes);
+                if is_cut(&block) {
+                    kept.push((block, bytes));
                 }
             }
         }
+        self.kept = kept;
         Ok(planes)
     }
 

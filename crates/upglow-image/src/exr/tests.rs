@@ -109,7 +109,7 @@ fn a_written_picture_opens_with_its_space_and_windows() {
         assert_eq!(picture.space().map(|s| s.name()), Some(name));
         assert_eq!(picture.windows(), Some([data, display]));
         assert_eq!((picture.size(), picture.has_alpha()), ([12, 20], true));
-        let bands: Vec<_> = picture.bands(1).collect::<Result<_, _>>().unwrap();
+        let bands: Vec<_> = picture.bands(16).collect::<Result<_, _>>().unwrap();
         assert_eq!(bands.iter().map(|b| b.rows()).collect::<Vec<_>>(), [16, 4]);
         let last = bands[1].rgb[47];
         assert_eq!(last, [planes[0][239], planes[1][239], planes[2][239]]);

@@ -48,7 +48,6 @@ impl ExrPicture {
                 None => LastSample::Absent,
             },
             windows: Some(reader.windows()),
-            block_rows: reader.block_rows(),
             orientation: 1,
         };
         Ok((Box::new(Self { reader, colors, alpha }), facts))

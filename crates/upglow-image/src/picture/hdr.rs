@@ -60,7 +60,6 @@ impl HdrPicture {
             },
             last_sample: LastSample::Absent,
             windows: None,
-            block_rows: 1,
             orientation,
         };
         Ok((Box::new(Self { file, width: size[0], exposure: lines.exposure }), facts))

@@ -108,7 +108,6 @@ impl JpegPicture {
             color,
             last_sample: LastSample::Absent,
             windows: None,
-            block_rows: 1,
             orientation: exif.orientation,
         };
         let (size, channels) = (*size, components.len());

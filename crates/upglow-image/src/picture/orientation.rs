@@ -46,7 +46,6 @@ impl Turned {
         if exchanged {
             facts.size.reverse();
         }
-        facts.block_rows = 1;
         Ok(Box::new(Self { source, stored, turn: Turn { exchanged, backwards }, whole: None }))
     }
 }

@@ -70,7 +70,6 @@ impl PngPicture {
                 false => LastSample::Absent,
             },
             windows: None,
-            block_rows: 1,
             orientation: match &info.exif_metadata {
                 Some(exif) => Exif::read(exif, FORMAT)?.orientation,
                 None => 1,

@@ -42,8 +42,6 @@ pub(super) struct Facts {
     pub(super) color: StatedColor,
     pub(super) last_sample: LastSample,
     pub(super) windows: Option<[Window; 2]>,
-    /// Rows that are stored together.
-    pub(super) block_rows: usize,
     /// Orientation as in TIFF and Exif, 1 to 8; 1 is upright.
     pub(super) orientation: u64,
 }

@@ -131,7 +131,6 @@ impl TgaPicture {
             color: StatedColor { space: Stated::No, encoding: Stated::No },
             last_sample: last_sample(stored, alpha_bits, attributes),
             windows: None,
-            block_rows: 1,
             // The origin is at the bottom unless bit 5 is set, and at the left unless bit 4 is.
             orientation: match descriptor >> 4 & 3 {
                 0 => 4,

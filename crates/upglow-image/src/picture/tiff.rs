@@ -27,6 +27,8 @@ pub(super) struct TiffPicture {
     planes: Vec<Packed>,
     row: Vec<u8>,
     numbers: Vec<f32>,
+    /// Rows of the row of tiles that was read last, and their samples.
+    tiles: (Range<usize>, Vec<f32>),
 }
 
 /// How the samples of a picture are stored.
@@ -100,12 +102,12 @@ impl TiffPicture {
             color,
             last_sample,
             windows: None,
-            block_rows: if layout.is_tiled { layout.chunk[1].min(layout.size[1]) } else { 1 },
             orientation: fields.integer(tag::ORIENTATION, 1)?,
         };
         let planes = (0..layout.planes).map(|_| Packed::open(path, method, is_reversed));
         let planes = planes.collect::<Result<_, _>>()?;
-        Ok((Box::new(Self { layout, planes, row: Vec::new(), numbers: Vec::new() }), facts))
+        let (row, numbers, tiles) = (Vec::new(), Vec::new(), (0..0, Vec::new()));
+        Ok((Box::new(Self { layout, planes, row, numbers, tiles }), facts))
     }
 
     /// Goes to the strip or tile in column `x` of row `y` of those of a plane.
@@ -150,6 +152,31 @@ impl TiffPicture {
 
 impl Source for TiffPicture {
     fn read(&mut self, rows: Range<usize>) -> Result<Pixels, PictureError> {
+        let Layout { size, chunk, is_tiled, .. } = self.layout;
+        let channels = self.layout.read.len();
+        if !is_tiled {
+            return Ok(pixels(&self.read_chunks(rows)?, channels));
+        }
+        let row = size[0] * channels;
+        let mut samples = Vec::with_capacity(rows.len() * row);
+        let mut y = rows.start;
+        while y < rows.end {
+            if !self.tiles.0.contains(&y) {
+                let whole = y..size[1].min(y + chunk[1]);
+                self.tiles = (whole.clone(), self.read_chunks(whole)?);
+            }
+            let (known, tiles) = &self.tiles;
+            let end = rows.end.min(known.end);
+            samples.extend_from_slice(&tiles[(y - known.start) * row..(end - known.start) * row]);
+            y = end;
+        }
+        Ok(pixels(&samples, channels))
+    }
+}
+
+impl TiffPicture {
+    /// The samples of the next rows; with tiles, of a row of tiles.
+    fn read_chunks(&mut self, rows: Range<usize>) -> Result<Vec<f32>, PictureError> {
         let Layout { size, chunk, across, is_tiled, .. } = self.layout;
         let channels = self.layout.read.len();
         let mut samples = vec![0.0; rows.len() * size[0] * channels];
@@ -180,7 +207,7 @@ impl Source for TiffPicture {
             }
             y = end;
         }
-        Ok(pixels(&samples, channels))
+        Ok(samples)
     }
 }
 
