@@ -76,6 +76,25 @@ impl Lab {
         let [dl, da, db] = [self.l - other.l, self.a - other.a, self.b - other.b];
         (dl * dl + da * da + db * db).sqrt()
     }
+
+    /// Distance from gray, C*.
+    pub fn chroma(self) -> f64 {
+        self.a.hypot(self.b)
+    }
+
+    /// ΔL*, ΔC* and ΔH* from this color to another: lighter, more colorful and counterclockwise, from red
+    /// to yellow, are positive. Their squares add up to that of [`Lab::de76`].
+    ///
+    /// # Source
+    ///
+    /// `cie015`, section 8.2.1.
+    pub fn lch_difference(self, other: Self) -> [f64; 3] {
+        let lightness = other.l - self.l;
+        let chroma = other.chroma() - self.chroma();
+        let square = self.de76(other).powi(2) - lightness * lightness - chroma * chroma;
+        let turn = self.a * other.b - self.b * other.a;
+        [lightness, chroma, square.max(0.0).sqrt().copysign(turn)]
+    }
 }
 
 #[cfg(test)]
@@ -89,6 +108,21 @@ mod tests {
         // Rounding only.
         assert!(lab_from_xyz(WHITE, WHITE).de76(Lab { l: 100.0, a: 0.0, b: 0.0 }) < 1e-12);
         assert!(lab_from_xyz(Xyz::default(), WHITE).de76(Lab::default()) < 1e-12);
+    }
+
+    #[test]
+    fn lightness_chroma_and_hue_add_up_to_the_whole_difference() {
+        // Rounding of numbers up to 200.
+        const ROUNDING: f64 = 1e-6;
+        let first = Lab { l: 50.0, a: 30.0, b: -40.0 };
+        for (l, a, b) in [(50.0, 30.0, -40.0), (60.0, -7.0, 90.0), (0.0, 0.0, 0.0)] {
+            let second = Lab { l, a, b };
+            let there = first.lch_difference(second);
+            let norm = there.iter().map(|v| v * v).sum::<f64>().sqrt();
+            assert!((norm - first.de76(second)).abs() < ROUNDING, "{there:?}");
+        }
+        let [lighter, richer, turned] = first.lch_difference(Lab { l: 51.0, a: 40.0, b: -40.0 });
+        assert!(lighter == 1.0 && richer > 0.0 && turned > 0.0);
     }
 
     #[test]

@@ -1,15 +1,21 @@
-//! Checks which materials a picture needs, before anything is baked.
+//! Checks which materials a picture needs and what a cube makes of it, before anything is baked.
 
+mod alternatives;
 mod cube_match;
 pub(crate) mod display;
+mod draw;
+mod dye_use;
 mod findings;
 mod html;
+mod hue;
 mod limits;
 mod maps;
 mod palette;
 mod ranking;
 mod raster;
 mod report;
+mod text;
+mod verdict;
 
 use std::path::Path;
 
@@ -23,14 +29,17 @@ use self::findings::Findings;
 use self::limits::Limits;
 use self::maps::Maps;
 use self::ranking::Candidate;
+use self::report::CubeMaps;
 use crate::picture::error::PictureError;
 use crate::picture::linear::LinearPicture;
 use crate::picture::stated::{Declared, Interpretation};
 
-pub use self::cube_match::CubeMatch;
+pub use self::alternatives::{Cause, Change, MissedTexel, WiderSpace};
+pub use self::cube_match::{BeyondOne, ColorDifference, CubeMatch};
+pub use self::dye_use::{DyeUse, UsedDye};
 pub use self::report::{CheckReport, Counts, Flaw, FlawedTexel, WorstTexel};
 
-/// Checks for each texel of a picture which kind of material its color needs.
+/// Checks for each texel of a picture which kind of material its color needs, and what a cube makes of it.
 ///
 /// A picture is read by bands of rows, and two maps of at most 1024 pixels per side and a few texels are
 /// kept, so memory is bounded. Reports depend neither on the bands nor on the number of threads.
@@ -94,8 +103,8 @@ impl<'c> Checker<'c> {
         Self { contract, declared, cube: None, known: Vec::new() }
     }
 
-    /// Checks pictures in the RGB space of `cube`, and also how well its mixtures match each texel.
-    /// Reports name it `file`.
+    /// Checks pictures in the RGB space of `cube`, and also how well its mixtures match each texel, where they
+    /// have dye, why the worst texels are missed, and what other cubes would do. Reports name it `file`.
     ///
     /// # Errors
     ///
@@ -130,9 +139,7 @@ impl<'c> Checker<'c> {
             pass.add(band.first_row, &band.rgb);
             Ok::<_, CheckError>(())
         })?;
-        let cube_file = self.cube.as_ref().map(|(_, file)| file.as_str());
-        let interpretation = picture.interpretation().clone();
-        Ok(pass.finish(input.display().to_string(), interpretation, cube_file))
+        Ok(pass.finish(input.display().to_string(), picture.interpretation().clone()))
     }
 
     /// The index of the limits for a picture: in the cube's RGB space, or in the picture's own.
@@ -143,7 +150,7 @@ impl<'c> Checker<'c> {
         }
         let known = self.known.iter().position(|limits| limits.contract == contract);
         known.unwrap_or_else(|| {
-            let cube = self.cube.as_ref().map(|(cube, _)| *cube);
+            let cube = self.cube.as_ref().map(|(cube, file)| (*cube, file.as_str()));
             self.known.push(Limits::new(contract, cube));
             self.known.len() - 1
         })
@@ -151,15 +158,15 @@ impl<'c> Checker<'c> {
 }
 
 /// The check of one picture, whose rows are added once, from top to bottom.
-struct Pass<'a> {
-    limits: &'a Limits<'a>,
+struct Pass<'a, 'c> {
+    limits: &'a Limits<'c>,
     size: [usize; 2],
     maps: Maps,
     findings: Findings,
 }
 
-impl<'a> Pass<'a> {
-    fn new(limits: &'a Limits<'a>, size: [usize; 2]) -> Self {
+impl<'a, 'c> Pass<'a, 'c> {
+    fn new(limits: &'a Limits<'c>, size: [usize; 2]) -> Self {
         Self { limits, size, maps: Maps::new(size), findings: Findings::default() }
     }
 
@@ -169,14 +176,10 @@ impl<'a> Pass<'a> {
         self.findings = std::mem::take(&mut self.findings).with(found);
     }
 
-    fn finish(
-        self,
-        file: String,
-        interpretation: Interpretation,
-        cube_file: Option<&str>,
-    ) -> CheckReport {
+    fn finish(self, file: String, interpretation: Interpretation) -> CheckReport {
         let Self { limits, size: [width, height], maps, findings } = self;
         let display = Display::new(limits.table.colorimetry());
+        let cube = limits.cube.as_ref();
         CheckReport {
             file,
             width,
@@ -187,7 +190,12 @@ impl<'a> Pass<'a> {
             counts: findings.counts,
             flaws: findings.flaws(),
             worst: worst(&limits.table, &display, &findings),
-            cube: cube_file.map(|file| findings.differences.finish(file)),
+            cube: cube.map(|cube| findings.blends.finish(limits, cube, &display)),
+            cube_maps: cube.map(|cube| {
+                let dose_ramp = cube.dose_ramp();
+                let [differences, doses] = maps.of_cube(dose_ramp, &display);
+                CubeMaps { differences, doses, dose_ramp }
+            }),
             heat: maps.heat(&display),
             thumbnail: maps.thumbnail(&display),
         }
@@ -203,9 +211,12 @@ fn worst(table: &StandingTable, display: &Display, findings: &Findings) -> Vec<W
             let color = LinearRgb(rgb.map(f64::from));
             let standing = table.standing(color);
             let own = table.colorimetry().xyz_from_rgb(color);
-            let swatches = [own, standing.reflectance.color, standing.fluorescence.color]
-                .map(|xyz| display.srgb(xyz));
-            WorstTexel { x, y, rgb, standing, swatches }
+            let nearest = [own, standing.reflectance.color, standing.fluorescence.color];
+            let pair = [own, standing.beyond().color];
+            let [from, to] = pair.map(|xyz| table.colorimetry().lab_from_xyz(xyz));
+            let difference = ColorDifference::new(from, to);
+            let swatches = display.srgb_together(nearest);
+            WorstTexel { x, y, rgb, standing, difference, swatches }
         })
         .collect();
     let beyond = |texel: &WorstTexel| texel.standing.beyond().distance;
@@ -216,6 +227,9 @@ fn worst(table: &StandingTable, display: &Display, findings: &Findings) -> Vec<W
     all.truncate(Checker::WORST);
     all
 }
+
+#[cfg(test)]
+mod cube_tests;
 
 #[cfg(test)]
 mod tests {
@@ -256,7 +270,7 @@ mod tests {
         for (i, band) in rgb.chunks(rows_at_once * WIDTH).enumerate() {
             pass.add(i * rows_at_once, band);
         }
-        pass.finish("<script>alert('&\u{1}')</script>\".exr".into(), understood(), None)
+        pass.finish("<script>alert('&\u{1}')</script>\".exr".into(), understood())
     }
 
     #[test]
@@ -334,7 +348,7 @@ mod tests {
         rgb[7505] = [0.0, 1.0, 0.0];
         rgb[2600] = [0.9, 0.0, 0.9];
         pass.add(0, &rgb);
-        let found = pass.finish("wide.exr".into(), understood(), None);
+        let found = pass.finish("wide.exr".into(), understood());
         assert_eq!((found.heat.width, found.heat.height), (1000, 1));
         let color = |column: usize| found.heat.pixels[column];
         let [gray, broken, green, magenta] = [color(1), color(0), color(501), color(520)];
@@ -359,7 +373,8 @@ mod tests {
             let named = |tag| document.descendants().filter(move |n| n.tag_name().name() == tag);
             assert_eq!(named("script").count(), 0);
             assert_eq!(named("img").count(), 2 * pictures.len());
-            let heading = named("h2").next().unwrap().text().unwrap();
+            let tag = if pictures.len() == 1 { "h1" } else { "h2" };
+            let heading = named(tag).next().unwrap().text().unwrap();
             assert_eq!(heading, name.replace('\u{1}', "\u{FFFD}"));
             assert_eq!(page.matches("http").count(), 1, "only the name space of HTML");
         }
@@ -374,13 +389,13 @@ mod tests {
         let model = Model::Dyes(model);
         let cube =
             build_cube(&contract, &model, Preset::Konig2020.options(), 3, &Unwatched).unwrap();
-        let limits = Limits::new(contract.clone(), Some(&cube));
+        let limits = Limits::new(contract.clone(), Some((&cube, "cube")));
         let nodes = cube.nodes().len();
         let rgb: Vec<[f32; 3]> =
             (0..nodes).map(|i| cube.coordinates(i).map(|k| k as f32 / 2.0)).collect();
         let mut pass = Pass::new(&limits, [nodes, 1]);
         pass.add(0, &rgb);
-        let found = pass.finish("nodes.exr".into(), understood(), Some("cube")).cube.unwrap();
+        let found = pass.finish("nodes.exr".into(), understood()).cube.unwrap();
         let stored = cube.nodes().iter().map(|node| f64::from(node.de2000));
         assert_eq!(found.texels, nodes as u64);
         // Single precision, where a small XYZ is magnified by ΔE00.

@@ -49,7 +49,8 @@ pub use bake::png::PngBits;
 pub use bake::repair::Repair;
 pub use bake::{BakeError, BakeOptions, Baked, Baker, Form};
 pub use check::{
-    CheckError, CheckReport, Checker, Counts, CubeMatch, Flaw, FlawedTexel, WorstTexel,
+    BeyondOne, Cause, Change, CheckError, CheckReport, Checker, ColorDifference, Counts, CubeMatch,
+    DyeUse, Flaw, FlawedTexel, MissedTexel, UsedDye, WiderSpace, WorstTexel,
 };
 pub use example_pictures::ExamplePicture;
 pub use exr::error::ExrError;

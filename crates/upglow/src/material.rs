@@ -17,6 +17,7 @@ pub(crate) mod model_on_grid;
 pub(crate) mod sampling;
 pub(crate) mod sigmoid;
 
+use dye_model::DyeModel;
 use sigmoid::Sigmoid;
 
 /// One material in at most six numbers, to be read with the [`crate::Model`] it was made for.
@@ -85,6 +86,19 @@ impl Fluorescence {
                 concentration
             }
             Self::Film { densities: [first, second], .. } => first + second,
+        }
+    }
+
+    /// The dyes of `model` by number and how much of each there is, which add up to the dose; (0, 0) in
+    /// place of a dye that is absent. Bells by formula are none of the model's dyes.
+    pub fn dyes(self, model: &DyeModel) -> [(usize, f64); 2] {
+        match self {
+            Self::None | Self::Analytic { .. } => [(0, 0.0); 2],
+            Self::Dyes { first, weight, concentration } => {
+                let partner = model.partner(first);
+                [(first, concentration * (1.0 - weight)), (partner, concentration * weight)]
+            }
+            Self::Film { dyes: [i, j], densities: [a, b] } => [(i, a), (j, b)],
         }
     }
 }

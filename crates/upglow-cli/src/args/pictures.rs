@@ -128,10 +128,12 @@ pub(crate) struct CheckArgs {
     /// Write an illustrated report on all pictures to this file
     #[arg(long, short, value_name = "REPORT.html")]
     pub(crate) output: Option<PathBuf>,
-    /// Write the heat map of a single picture to this file
+    /// Write the heat map of a single picture to this file: how far the cube is off, or without --cube
+    /// which materials are needed
     #[arg(long, value_name = "FILE.png")]
     pub(crate) heat_map: Option<PathBuf>,
-    /// Also report how close the materials of this cube come; its light and adaptation are used
+    /// Also judge this cube: how far its materials are off and why, where they have dye, and what other
+    /// cubes would change; its light and adaptation are used
     #[arg(long, value_name = "FILE")]
     pub(crate) cube: Option<PathBuf>,
     #[arg(

@@ -1,4 +1,4 @@
-//! `upglow check`: which texels of pictures a material can match.
+//! `upglow check`: which texels of pictures a material can match, and what a cube makes of them.
 
 use std::path::{Path, PathBuf};
 
@@ -6,7 +6,8 @@ use serde::Serialize;
 use upglow::Cube;
 use upglow_color::Contract;
 use upglow_image::{
-    CheckError, CheckReport, Checker, CubeMatch, Flaw, FlawedTexel, Interpretation, WorstTexel,
+    Change, CheckError, CheckReport, Checker, CubeMatch, DyeUse, Flaw, FlawedTexel, Interpretation,
+    MissedTexel, UsedDye, WorstTexel,
 };
 use upglow_terminal::{Console, Failure, Report};
 
@@ -19,6 +20,7 @@ use crate::{files, pictures, plan};
 
 #[derive(Debug, Serialize)]
 struct PictureReport {
+    headline: String,
     #[serde(flatten)]
     found: CheckReport,
     heat_map: Option<String>,
@@ -55,7 +57,7 @@ pub(crate) fn run(args: &CheckArgs, console: &Console) -> Result<(), Failure> {
         let shown = |path: &Option<PathBuf>| path.as_ref().map(|path| path.display().to_string());
         found.into_iter().try_for_each(|found| {
             let (heat_map, page) = (shown(&args.heat_map), shown(&args.output));
-            batch.add(console, PictureReport { found, heat_map, page })
+            batch.add(console, PictureReport { headline: found.headline(), found, heat_map, page })
         })
     });
     batch.finish(console, ended)
@@ -113,14 +115,65 @@ impl Interpreted for PictureReport {
     }
 }
 
+fn percent(share: f64) -> String {
+    format!("{:.2} %", 100.0 * share)
+}
+
+/// Adds what a cube makes of a picture.
+fn add_cube(lines: &mut Lines, cube: &CubeMatch) {
+    let CubeMatch { file, mean_de2000, greatest_de2000, dye, .. } = cube;
+    lines.add(
+        "with the cube",
+        format_args!(
+            "{file}: {} within 1 ΔE00, {} within 2; mean {mean_de2000:.2}, greatest \
+             {greatest_de2000:.2}",
+            percent(cube.within_one),
+            percent(cube.within_two),
+        ),
+    );
+    lines.add_kinds(&cube.kinds);
+    for (i, texel) in cube.worst.iter().enumerate() {
+        let MissedTexel { x, y, rgb, de2000, cause, .. } = texel;
+        let name = if i == 0 { "furthest off" } else { "" };
+        let rgb = rgb_text(*rgb);
+        lines.add(name, format_args!("{x},{y} ({rgb}): ΔE00 {de2000:.2}; {cause}"));
+    }
+    let DyeUse { unit, share, mean_dose, greatest_dose, dyes } = dye;
+    if *share > 0.0 {
+        lines.add(
+            "dye",
+            format_args!(
+                "{} of texels; {unit} {mean_dose:.3} on average, {greatest_dose:.3} at most",
+                percent(*share)
+            ),
+        );
+    }
+    for UsedDye { name, share, mean, greatest } in dyes {
+        let share = percent(*share);
+        lines.add("", format_args!("{share} {name}: {mean:.3} on average, {greatest:.3} at most"));
+    }
+    for (i, change) in cube.changes.iter().enumerate().skip(1) {
+        let Change { name, options, within_one, with_dye, .. } = change;
+        let options = if options.is_empty() { String::new() } else { format!(" ({options})") };
+        lines.add(
+            if i == 1 { "instead" } else { "" },
+            format_args!(
+                "{name}{options}: about {:.1} % within 1 ΔE00, {:.1} % with dye",
+                100.0 * within_one,
+                100.0 * with_dye
+            ),
+        );
+    }
+}
+
 impl Report for PictureReport {
     fn text(&self) -> String {
-        let percent = |share: f64| format!("{:.2} %", 100.0 * share);
         let CheckReport { file, width, height, interpretation, .. } = &self.found;
         let CheckReport { rgb_space, illuminant, counts, .. } = &self.found;
         let share = |texels| percent(counts.share(texels));
         let mut lines = Lines::default();
         lines
+            .add("result", &self.headline)
             .add("picture", format_args!("{file}, {width} × {height}"))
             .add("RGB space", &interpretation.space)
             .add("encoding", &interpretation.encoding)
@@ -151,18 +204,9 @@ impl Report for PictureReport {
             );
         }
         if let Some(cube) = &self.found.cube {
-            let CubeMatch { file, mean_de2000, greatest_de2000, .. } = cube;
-            lines.add(
-                "with the cube",
-                format_args!(
-                    "{file}: {} within 1 ΔE00, {} within 2; mean {mean_de2000:.2}, greatest \
-                     {greatest_de2000:.2}",
-                    percent(cube.within_one),
-                    percent(cube.within_two),
-                ),
-            );
-            lines.add_kinds(&cube.kinds);
+            add_cube(&mut lines, cube);
         }
+        lines.add("advice", self.found.advice());
         for (name, path) in [("heat map", &self.heat_map), ("page", &self.page)] {
             if let Some(path) = path {
                 lines.add(name, path);

@@ -3,7 +3,7 @@
 use upglow_color::StandingKind;
 use upglow_fit::Estimate;
 
-use super::cube_match::DifferenceSums;
+use super::cube_match::BlendFindings;
 use super::ranking::{Candidate, Ranking};
 use super::report::{Counts, Flaw, FlawedTexel};
 
@@ -19,7 +19,7 @@ const CANDIDATES: usize = 32;
 pub(super) struct Findings {
     pub(super) counts: Counts,
     pub(super) worst: Ranking<CANDIDATES>,
-    pub(super) differences: DifferenceSums,
+    pub(super) blends: BlendFindings,
     flawed: [Vec<FlawedTexel>; Flaw::ALL.len()],
 }
 
@@ -27,7 +27,7 @@ impl Findings {
     pub(super) fn with(mut self, other: Self) -> Self {
         self.counts.join(&other.counts);
         self.worst.join(other.worst);
-        self.differences.join(&other.differences);
+        self.blends.join(other.blends);
         for (all, part) in self.flawed.iter_mut().zip(other.flawed) {
             all.extend(part);
             all.sort_by_key(|texel| (texel.y, texel.x));

@@ -1,114 +1,131 @@
 //! The HTML page of a check, in a single file.
 
+mod figures;
 mod style;
-mod text;
+mod tables;
 
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
-
-use upglow_color::{Nearest, StandingKind};
 use upglow_fit::MaterialKind;
 
+use self::figures::figures;
 use self::style::STYLE;
-use self::text::{escaped, grouped, percent, value};
+use self::tables::{changes, dyes, flaws, missed, worst};
 use super::cube_match::CubeMatch;
-use super::palette::{Heat, ramp_position};
-use super::raster::Raster;
-use super::report::{CheckReport, Flaw, WorstTexel};
+use super::report::CheckReport;
+use super::text::{escaped, grouped, percent};
 
 impl CheckReport {
-    /// An HTML page about some pictures, without scripts or external resources, well-formed as XML. Each
-    /// picture prints on one sheet of paper.
+    /// An HTML page about some pictures, without scripts or external resources, well-formed as XML.
     #[must_use]
     pub fn page(reports: &[Self]) -> String {
         let title = match reports {
-            [one] => format!("What {} needs", escaped(&one.file)),
-            many => format!("What {} pictures need", many.len()),
+            [one] => format!("Check of {}", escaped(&one.file)),
+            many => format!("Check of {} pictures", many.len()),
         };
-        let overview = if reports.len() > 1 { overview(reports) } else { String::new() };
-        let articles: String = reports.iter().enumerate().map(|(i, r)| article(i, r)).collect();
+        let is_alone = reports.len() == 1;
+        let overview = if is_alone { String::new() } else { overview(&title, reports) };
+        let heading = Heading { level: if is_alone { 1 } else { 2 } };
+        let articles = reports.iter().enumerate().map(|(i, r)| article(i, r, heading));
         format!(
             "<!DOCTYPE html>\n<html xmlns=\"http://www.w3.org/1999/xhtml\" lang=\"en\">\n<head>\n\
              <meta charset=\"utf-8\"/>\n\
              <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n\
              <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<main>\n\
-             {overview}{articles}</main>\n</body>\n</html>\n"
+             {overview}{}</main>\n</body>\n</html>\n",
+            articles.collect::<String>()
         )
     }
 }
 
-fn overview(reports: &[CheckReport]) -> String {
+/// The level of a picture's heading; its sections are one below.
+#[derive(Clone, Copy)]
+struct Heading {
+    level: u8,
+}
+
+impl Heading {
+    fn picture(self, text: &str) -> String {
+        format!("<h{0} class=\"picture\">{1}</h{0}>\n", self.level, escaped(text))
+    }
+
+    fn section(self, text: &str) -> String {
+        format!("<h{0} class=\"section\">{1}</h{0}>\n", self.level + 1, escaped(text))
+    }
+}
+
+fn overview(title: &str, reports: &[CheckReport]) -> String {
     let row = |(i, report): (usize, &CheckReport)| {
         format!(
             "<tr><td><a href=\"#picture-{i}\">{}</a></td><td class=\"wide\">{}</td><td>{}</td></tr>\n",
             escaped(&report.file),
             bar(report),
-            headline(report),
+            escaped(&report.headline()),
         )
     };
     let rows: String = reports.iter().enumerate().map(row).collect();
-    let count = reports.len();
     format!(
-        "<section class=\"overview\">\n<h1>What {count} pictures need</h1>\n\
-         <table>\n<tbody>\n{rows}</tbody>\n</table>\n</section>\n"
+        "<section class=\"overview\">\n<h1>{title}</h1>\n\
+         <div class=\"scroll\"><table>\n<thead><tr><th>picture</th><th>needed materials</th>\
+         <th>result</th></tr></thead>\n<tbody>\n{rows}</tbody>\n</table></div>\n</section>\n"
     )
 }
 
-fn article(index: usize, report: &CheckReport) -> String {
+fn article(index: usize, report: &CheckReport, heading: Heading) -> String {
     let CheckReport { width, height, .. } = report;
+    let of_cube = report.cube.as_ref().map(|cube| cube_sections(cube, heading));
     format!(
-        "<article id=\"picture-{index}\">\n<header>\n<h2>{}</h2>\n\
+        "<article id=\"picture-{index}\">\n<header>\n{}\
          <p class=\"facts\">{width} × {height} texels · read as {} · checked in {} under {}</p>\n</header>\n\
-         <p class=\"verdict\">{}</p>\n<p class=\"next\">{}</p>\n{}{}{}{}{}{}</article>\n",
-        escaped(&report.file),
+         <p class=\"verdict\">{}</p>\n<p class=\"next\">{}</p>\n{}{}{}{}{}{}{}</article>\n",
+        heading.picture(&report.file),
         escaped(&report.interpretation.to_string()),
         escaped(&report.rgb_space),
         escaped(&report.illuminant),
-        headline(report),
-        next(report),
+        escaped(&report.headline()),
+        with_code(&report.advice()),
+        figures(report),
+        of_cube.unwrap_or_default(),
+        heading.section("Which materials it needs"),
         bar(report),
         shares(report),
-        pictures(report),
-        flaws(report),
-        worst(&report.worst),
-        report.cube.as_ref().map(cube_match).unwrap_or_default(),
+        flaws(report, heading),
+        worst(&report.worst, heading),
     )
 }
 
-/// The result in one sentence.
-fn headline(report: &CheckReport) -> String {
-    let counts = &report.counts;
-    let share = |part| percent(counts.share(part));
-    let needs = share(counts.needs_fluorescence);
-    match (counts.no_color, counts.unreachable, counts.needs_fluorescence) {
-        (0, 0, 0) => "Reflectances match every texel.".into(),
-        (0, 0, _) => {
-            format!("{needs} of the texels need fluorescence; materials match all texels.")
-        }
-        (0, unreachable, 0) => format!("No material matches {} of the texels.", share(unreachable)),
-        (0, unreachable, _) => {
-            let beyond = share(unreachable);
-            format!("{needs} of the texels need fluorescence; no material matches {beyond}.")
-        }
-        (1, ..) => "1 texel is NaN or infinite.".into(),
-        (no_color, ..) => format!("{} texels are NaN or infinite.", grouped(no_color)),
-    }
+/// Text with what is between backticks as code.
+fn with_code(text: &str) -> String {
+    let parts = text.split('`').enumerate();
+    let marked = parts.map(|(i, part)| match i % 2 {
+        0 => escaped(part),
+        _ => format!("<code>{}</code>", escaped(part)),
+    });
+    marked.collect()
 }
 
-/// Advice in one sentence.
-fn next(report: &CheckReport) -> &'static str {
-    let counts = &report.counts;
-    if counts.no_color > 0 {
-        "Find the cause of the NaN or infinite values (the first texels are listed below), or make them black with <code>--repair</code>."
-    } else if !counts.all_in_range() {
-        "Baking refuses values outside 0 to 1: correct them, or use <code>--repair clip</code>, <code>scale</code> or <code>nearest</code>."
-    } else if counts.unreachable > 0 {
-        "Desaturate the areas that are pink to purple in the map, or let <code>--repair nearest</code> move them to the nearest color of a material."
-    } else if counts.needs_fluorescence > 0 {
-        "Bake it with a cube that has dyes; without dyes, the areas that are yellow to brown in the map become less saturated."
-    } else {
-        "Bake it with any cube: it needs no fluorescence."
-    }
+fn cube_sections(cube: &CubeMatch, heading: Heading) -> String {
+    let CubeMatch { file, texels, within_one, within_two, mean_de2000, greatest_de2000, .. } = cube;
+    let item = |(kind, count): (MaterialKind, u64)| {
+        let share = count as f64 / (*texels).max(1) as f64;
+        format!(
+            "<li><b>{}</b> {} <small>{}</small></li>\n",
+            percent(share),
+            kind.label(),
+            grouped(count)
+        )
+    };
+    let kinds: String = cube.kinds.each().into_iter().map(item).collect();
+    format!(
+        "{}<p>Of {} texels in range its blends match <b>{}</b> within 1 ΔE00 and <b>{}</b> within 2; \
+         the mean is {mean_de2000:.2}, the greatest {greatest_de2000:.2}.</p>\n\
+         <ul class=\"shares\">\n{kinds}</ul>\n{}{}{}",
+        heading.section(&format!("What {file} makes of it")),
+        grouped(*texels),
+        percent(*within_one),
+        percent(*within_two),
+        missed(&cube.worst, heading),
+        dyes(&cube.dye, heading),
+        changes(cube, heading),
+    )
 }
 
 /// The four kinds of texels: class of style, name, count.
@@ -132,7 +149,7 @@ fn bar(report: &CheckReport) -> String {
         )
     };
     let parts: String = kinds(report).into_iter().filter(|kind| kind.2 > 0).map(part).collect();
-    format!("<div class=\"bar\">{parts}</div>\n")
+    format!("<div class=\"bar\" aria-hidden=\"true\">{parts}</div>\n")
 }
 
 fn shares(report: &CheckReport) -> String {
@@ -146,154 +163,6 @@ fn shares(report: &CheckReport) -> String {
     let kinds = kinds(report).into_iter();
     let shown = kinds.filter(|&(class, _, count)| class != "no-color" || count > 0);
     format!("<ul class=\"shares\">\n{}</ul>\n", shown.map(item).collect::<String>())
-}
-
-fn pictures(report: &CheckReport) -> String {
-    format!(
-        "<div class=\"pictures\">\n<figure>{}<figcaption>The picture in sRGB</figcaption>\
-         </figure>\n<figure>{}<figcaption>Needed materials; ΔE00 of the furthest texel</figcaption>{}\
-         </figure>\n</div>\n",
-        image(&report.thumbnail, "the picture"),
-        image(&report.heat, "the heat map"),
-        legend(report),
-    )
-}
-
-/// Pictures narrower than this are enlarged without smoothing.
-const FEW_PIXELS: u32 = 256;
-
-fn image(raster: &Raster, name: &str) -> String {
-    let data = STANDARD.encode(raster.to_png());
-    let class = if raster.width < FEW_PIXELS { " class=\"texels\"" } else { "" };
-    let (width, height) = (raster.width, raster.height);
-    format!(
-        "<img{class} width=\"{width}\" height=\"{height}\" alt=\"{name}\" \
-         src=\"data:image/png;base64,{data}\"/>"
-    )
-}
-
-fn legend(report: &CheckReport) -> String {
-    let counts = &report.counts;
-    let mut rows = ramp("beyond reflectance", Heat::Fluorescence);
-    rows += &ramp("beyond any material", Heat::Unreachable);
-    rows += "<div class=\"ramp plain\"><span>a reflectance</span><i class=\"gray\"></i></div>\n";
-    if counts.no_color > 0 {
-        rows += "<div class=\"ramp plain\"><span>NaN or infinite</span><i class=\"no-color\"></i></div>\n";
-    }
-    format!("<div class=\"legend\">\n{rows}</div>")
-}
-
-/// Differences that a ramp is marked at.
-const TICKS: [f64; 4] = [1.0, 3.0, 10.0, 30.0];
-
-fn ramp(name: &str, heat: fn(f64) -> Heat) -> String {
-    // Enough stops to approximate a ramp that is linear in another scale.
-    let stops = (0..=16).map(|i| 30.0_f64.ln_1p() * f64::from(i) / 16.0).map(f64::exp_m1);
-    let stop =
-        |de2000| format!(",{} {:.1}%", hex(heat(de2000).color(0.0)), 100.0 * ramp_position(de2000));
-    let stops: String = stops.map(stop).collect();
-    let tick = |de2000: f64| {
-        format!("<b style=\"left:{:.1}%\">{de2000}</b>", 100.0 * ramp_position(de2000))
-    };
-    let ticks: String = TICKS.into_iter().map(tick).collect();
-    format!(
-        "<div class=\"ramp\"><span>{name}</span>\
-         <i style=\"background:linear-gradient(to right{stops})\">{ticks}</i></div>\n"
-    )
-}
-
-fn flaws(report: &CheckReport) -> String {
-    if report.counts.all_in_range() {
-        return "<p class=\"fine\">All values are in 0 to 1.</p>\n".into();
-    }
-    let row = |flaw: Flaw| {
-        let places: Vec<String> = report
-            .flaws
-            .iter()
-            .filter(|texel| texel.flaw == flaw)
-            .map(|texel| {
-                let [r, g, b] = texel.rgb.map(value);
-                format!("<span class=\"place\">({}, {}): {r}, {g}, {b}</span>", texel.x, texel.y)
-            })
-            .collect();
-        format!(
-            "<tr><th class=\"name\">{}</th><td class=\"number\">{}</td><td>{}</td></tr>\n",
-            flaw,
-            grouped(report.counts.of(flaw)),
-            places.join(" ")
-        )
-    };
-    let found = Flaw::ALL.into_iter().filter(|&flaw| report.counts.of(flaw) > 0);
-    format!(
-        "<h3>Values out of range</h3>\n<table>\n<thead><tr><th>value</th><th class=\"number\">texels\
-         </th><th>the first texels, as (column, row): red, green, blue</th></tr></thead>\n\
-         <tbody>\n{}</tbody>\n</table>\n",
-        found.map(row).collect::<String>()
-    )
-}
-
-fn worst(texels: &[WorstTexel]) -> String {
-    if texels.is_empty() {
-        return String::new();
-    }
-    let rows: String = texels.iter().map(worst_row).collect();
-    format!(
-        "<h3>The worst texels</h3>\n<table>\n<thead><tr><th>column, row</th><th>red, green, blue</th>\
-         <th>color</th><th>nearest reflectance</th><th>nearest of any material</th></tr></thead>\n\
-         <tbody>\n{rows}</tbody>\n</table>\n\
-         <p class=\"note\">Swatches are clipped to sRGB, so different colors may look alike. \
-         The number beside a swatch is its ΔE00 from the texel's color.</p>\n"
-    )
-}
-
-fn worst_row(texel: &WorstTexel) -> String {
-    let [r, g, b] = texel.rgb.map(value);
-    let [own, reflectance, any] = texel.swatches.map(hex);
-    let swatch =
-        |color: &str| format!("<span class=\"swatch\" style=\"background:{color}\"></span>");
-    let beside = |nearest: &Nearest| match nearest.distance {
-        0.0 => "matched".into(),
-        _ => format!("{:.2}", nearest.de2000),
-    };
-    let class = match texel.standing.kind {
-        StandingKind::Unreachable => "unreachable",
-        _ => "fluorescence",
-    };
-    format!(
-        "<tr><td><span class=\"key {class}\"></span>{}, {}</td><td>{r}, {g}, {b}</td><td>{}</td>\
-         <td>{}{}</td><td>{}{}</td></tr>\n",
-        texel.x,
-        texel.y,
-        swatch(&own),
-        swatch(&reflectance),
-        beside(&texel.standing.reflectance),
-        swatch(&any),
-        beside(&texel.standing.fluorescence),
-    )
-}
-
-fn cube_match(found: &CubeMatch) -> String {
-    let CubeMatch { file, texels, within_one, within_two, mean_de2000, greatest_de2000, kinds } =
-        found;
-    let item = |(kind, count): (MaterialKind, u64)| {
-        let share = count as f64 / (*texels).max(1) as f64;
-        format!(
-            "<li><b>{}</b> {} <small>{}</small></li>\n",
-            percent(share),
-            kind.label(),
-            grouped(count)
-        )
-    };
-    let kinds: String = kinds.each().into_iter().map(item).collect();
-    format!(
-        "<h3>Match with {}</h3>\n<p>Of {} texels in range its blends match <b>{}</b> within 1 ΔE00 \
-         and <b>{}</b> within 2; the mean is {mean_de2000:.2}, the greatest \
-         {greatest_de2000:.2}.</p>\n<ul class=\"shares\">\n{kinds}</ul>\n",
-        escaped(file),
-        grouped(*texels),
-        percent(*within_one),
-        percent(*within_two),
-    )
 }
 
 fn hex([r, g, b]: [u8; 3]) -> String {

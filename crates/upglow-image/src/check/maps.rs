@@ -1,14 +1,15 @@
-//! The heat map and the thumbnail, which are accumulated while rows are read.
+//! The maps and the thumbnail, which are accumulated while rows are read.
 
 use rayon::prelude::*;
 use upglow_color::rounding::to_single;
 use upglow_color::{LinearRgb, StandingKind};
 use upglow_fit::Estimate;
 
+use super::cube_match::Blended;
 use super::display::Display;
 use super::findings::Findings;
 use super::limits::Limits;
-use super::palette::Heat;
+use super::palette::{CubeHeat, Heat, Ramp};
 use super::raster::Raster;
 
 /// Blocks of a picture; each becomes a pixel of the maps.
@@ -30,6 +31,7 @@ struct Block {
     sum: [u64; 3],
     colors: u32,
     worst: Heat,
+    cube: CubeHeat,
 }
 
 /// Greatest width and height of the maps.
@@ -78,6 +80,15 @@ impl Maps {
         self.raster(|block| block.worst.color(display.brightness(block.mean())))
     }
 
+    /// The map of a cube's differences, and that of its doses.
+    pub(super) fn of_cube(&self, doses: Ramp, display: &Display) -> [Raster; 2] {
+        let bright = |block: &Block| display.brightness(block.mean());
+        [
+            self.raster(|block| block.cube.difference_color(bright(block))),
+            self.raster(|block| block.cube.dose_color(doses, bright(block))),
+        ]
+    }
+
     pub(super) fn thumbnail(&self, display: &Display) -> Raster {
         self.raster(|block| display.srgb_of_rgb(block.mean()))
     }
@@ -97,38 +108,46 @@ fn check_blocks<'b>(
     limits: &Limits<'_>,
 ) -> Findings {
     let mut texel_check = TexelCheck { limits, last: None, findings: Findings::default() };
+    let mut blended = Vec::new();
     for (y, texels) in rows {
-        for (x, &rgb) in texels.iter().enumerate() {
-            texel_check.add([left + x, y], rgb, &mut blocks[x / side]);
-        }
         if let Some(cube) = &limits.cube {
-            let differences = &mut texel_check.findings.differences;
-            differences.add_texels(cube, limits.table.colorimetry(), texels);
+            blended.resize(texels.len(), [0.0; 3]);
+            cube.colors.xyz(texels, &mut blended).expect("there is room for each texel");
+        }
+        for (x, &rgb) in texels.iter().enumerate() {
+            let blend = blended.get(x).copied();
+            texel_check.add([left + x, y], rgb, blend, &mut blocks[x / side]);
         }
     }
     texel_check.findings
 }
 
 /// Checks one texel after another.
-struct TexelCheck<'a> {
-    limits: &'a Limits<'a>,
+struct TexelCheck<'a, 'c> {
+    limits: &'a Limits<'c>,
     /// The previous color: pictures contain many runs of the same color.
     last: Option<([f32; 3], Estimate)>,
     findings: Findings,
 }
 
-impl TexelCheck<'_> {
-    fn add(&mut self, at: [usize; 2], rgb: [f32; 3], block: &mut Block) {
+impl TexelCheck<'_, '_> {
+    /// Adds a texel, and the color of the cube's blend if there is a cube.
+    fn add(&mut self, at: [usize; 2], rgb: [f32; 3], blend: Option<[f32; 3]>, block: &mut Block) {
         if rgb.iter().any(|v| !(0.0..=1.0).contains(v)) {
             self.findings.add_flaws(at, rgb);
         }
-        if rgb.iter().all(|v| v.is_finite()) {
-            let found = self.estimate(rgb);
-            self.findings.add_color(at, rgb, &found);
-            block.add(rgb, &found);
-        } else {
+        if !rgb.iter().all(|v| v.is_finite()) {
             self.findings.counts.add(None);
             block.worst = Heat::NoColor;
+            block.cube.is_outside = true;
+            return;
+        }
+        let found = self.estimate(rgb);
+        self.findings.add_color(at, rgb, &found);
+        block.add(rgb, &found);
+        if let (Some(cube), Some(blend)) = (&self.limits.cube, blend) {
+            let texel = Blended { at, rgb, needs: found.kind, blend };
+            block.cube.add(self.findings.blends.add(self.limits, cube, texel));
         }
     }
 
@@ -149,7 +168,7 @@ impl Block {
         (0..3).for_each(|k| self.sum[k] += units(rgb[k]));
         self.colors += 1;
         // Single precision suffices for a pixel's color.
-        let de2000 = f64::from(to_single(found.de2000));
+        let de2000 = to_single(found.de2000);
         let worst = match found.kind {
             StandingKind::Reflectance => return,
             StandingKind::NeedsFluorescence => Heat::Fluorescence(de2000),

@@ -15,8 +15,11 @@ pub(super) struct Candidate {
     pub(super) x: usize,
     pub(super) y: usize,
     pub(super) rgb: [f32; 3],
+    /// The kind of material that the color needs, which comes first; the same for all where only the
+    /// distance counts.
     pub(super) kind: StandingKind,
-    /// Estimated distance beyond the colors of materials, or beyond those of reflectances.
+    /// Estimated distance beyond the colors of materials, or beyond those of reflectances; or a cube's
+    /// difference.
     pub(super) distance: f64,
 }
 

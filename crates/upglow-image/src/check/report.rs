@@ -4,7 +4,8 @@ use std::fmt;
 
 use upglow_color::{Standing, StandingKind};
 
-use super::cube_match::CubeMatch;
+use super::cube_match::{ColorDifference, CubeMatch};
+use super::palette::Ramp;
 use super::raster::Raster;
 use crate::picture::stated::Interpretation;
 
@@ -34,20 +35,38 @@ pub struct CheckReport {
     pub worst: Vec<WorstTexel>,
     /// How well a cube's materials match the picture, if there is a cube.
     pub cube: Option<CubeMatch>,
-    /// The heat map.
+    /// The map of the materials that are needed.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(super) heat: Raster,
+    /// The maps of a cube, if there is one.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub(super) cube_maps: Option<CubeMaps>,
     /// The picture in sRGB, reduced.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(super) thumbnail: Raster,
 }
 
+/// What a cube makes of a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct CubeMaps {
+    /// ΔE00 of its blends.
+    pub(super) differences: Raster,
+    /// Their doses.
+    pub(super) doses: Raster,
+    /// The colors of the doses.
+    pub(super) dose_ramp: Ramp,
+}
+
 impl CheckReport {
-    /// The heat map, as a PNG file: gray where reflectances match the picture, yellow to brown where it
-    /// needs fluorescence, pink to purple where no material matches it, cyan for NaN and infinite values.
+    /// The heat map, as a PNG file.
+    ///
+    /// With a cube it shows how far its blends are off: gray where they match, light to dark red on a
+    /// logarithmic scale to 10 ΔE00, cyan where values are outside 0..=1. Without a cube it shows which
+    /// materials are needed: gray where reflectances match the picture, yellow to brown where it needs
+    /// fluorescence, pink to purple where no material matches it, cyan for NaN and infinite values.
     #[must_use]
     pub fn heat_map_png(&self) -> Vec<u8> {
-        self.heat.to_png()
+        self.cube_maps.as_ref().map_or(&self.heat, |maps| &maps.differences).to_png()
     }
 }
 
@@ -209,6 +228,8 @@ pub struct WorstTexel {
     pub rgb: [f32; 3],
     /// The kind of material it needs, and its distances from the colors of materials.
     pub standing: Standing,
+    /// From its color to the nearest one of the kind of material that it is furthest beyond.
+    pub difference: ColorDifference,
     /// The texel's color, the nearest of a reflectance, and the nearest of any material, in sRGB.
     pub(super) swatches: [[u8; 3]; 3],
 }
@@ -228,13 +249,14 @@ impl WorstTexel {
 impl serde::Serialize for WorstTexel {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         use serde::ser::SerializeStruct as _;
-        let mut fields = serializer.serialize_struct("WorstTexel", 6)?;
+        let mut fields = serializer.serialize_struct("WorstTexel", 7)?;
         fields.serialize_field("x", &self.x)?;
         fields.serialize_field("y", &self.y)?;
         fields.serialize_field("rgb", &self.rgb)?;
         fields.serialize_field("needs", self.needs())?;
         fields.serialize_field("reflectance_de2000", &self.standing.reflectance.de2000)?;
         fields.serialize_field("material_de2000", &self.standing.fluorescence.de2000)?;
+        fields.serialize_field("difference", &self.difference)?;
         fields.end()
     }
 }

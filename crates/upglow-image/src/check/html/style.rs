@@ -19,8 +19,9 @@ body {
   font-variant-numeric: tabular-nums;
 }
 main { max-width: 1040px; margin: 0 auto; padding: 40px 28px 56px; }
-h1, h2 { font-size: 27px; line-height: 1.2; font-weight: 650; margin: 0; overflow-wrap: anywhere; }
-h3 { font-size: 16px; font-weight: 650; margin: 30px 0 8px; }
+h1, .picture { font-size: 27px; line-height: 1.2; font-weight: 650; margin: 0; overflow-wrap: anywhere; }
+.section { font-size: 16px; font-weight: 650; margin: 34px 0 8px; }
+.scroll { overflow-x: auto; }
 p { margin: 6px 0; }
 a { color: inherit; }
 code { font: 0.92em ui-monospace, Consolas, monospace; background: var(--plate); padding: 1px 4px; border-radius: 4px; }
@@ -78,8 +79,8 @@ thead th { color: var(--soft); font-size: 13px; }
   * { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
   body { font-size: 10.5px; }
   main { padding: 0; max-width: none; }
-  h1, h2 { font-size: 19px; }
-  h3 { font-size: 12px; margin: 12px 0 3px; break-after: avoid; }
+  h1, .picture { font-size: 19px; }
+  .section { font-size: 12px; margin: 12px 0 3px; break-after: avoid; }
   .verdict { font-size: 13px; margin-top: 8px; }
   .bar { height: 13px; margin: 10px 0 6px; }
   .pictures { grid-template-columns: 1fr 1fr; gap: 14px; margin-top: 12px; }

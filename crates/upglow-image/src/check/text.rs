@@ -53,6 +53,12 @@ pub(super) fn value(v: f32) -> String {
     number.replace('-', "−")
 }
 
+/// A signed number of one decimal.
+pub(super) fn signed(v: f64) -> String {
+    let text = format!("{v:+.1}");
+    if text.ends_with("0.0") && v.abs() < 1.0 { "0.0".into() } else { text.replace('-', "−") }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -70,6 +76,14 @@ mod tests {
     fn thousands_are_separated() {
         assert_eq!(grouped(16_777_216), "16\u{202F}777\u{202F}216");
         assert_eq!((grouped(0), grouped(999)), ("0".into(), "999".into()));
+    }
+
+    #[test]
+    fn signs_are_shown_but_for_nothing() {
+        assert_eq!(
+            [1.26, -1.24, 0.04, -0.04, -20.0].map(signed),
+            ["+1.3", "−1.2", "0.0", "0.0", "−20.0"]
+        );
     }
 
     #[test]
