@@ -174,6 +174,7 @@ impl Report for PictureReport {
         let mut lines = Lines::default();
         lines
             .add("result", &self.headline)
+            .add("advice", self.found.advice())
             .add("picture", format_args!("{file}, {width} × {height}"))
             .add("RGB space", &interpretation.space)
             .add("encoding", &interpretation.encoding)
@@ -206,7 +207,6 @@ impl Report for PictureReport {
         if let Some(cube) = &self.found.cube {
             add_cube(&mut lines, cube);
         }
-        lines.add("advice", self.found.advice());
         for (name, path) in [("heat map", &self.heat_map), ("page", &self.page)] {
             if let Some(path) = path {
                 lines.add(name, path);

@@ -142,11 +142,16 @@ impl<'c> Alternatives<'c> {
         let (contract, model) = (cube.contract(), cube.model());
         let options = FitOptions::try_from(cube.fit()).ok();
         let fitter = |options: FitOptions| Fitter::new(contract, model, options).ok();
+        let base = match &cube.fit().preset {
+            Some(preset) if *preset == Preset::default().to_string() => String::new(),
+            Some(preset) => format!("--preset {preset} "),
+            None => "the cube's own and ".into(),
+        };
         let steeper = options.and_then(|options| {
             let limit = Cause::STEEPER * options.slope_max_per_nm?;
             Some(Alternative {
                 name: format!("slopes up to {limit}/nm"),
-                options: format!("--slope-max-per-nm {limit}"),
+                options: format!("{base}--slope-max-per-nm {limit}"),
                 fitter: fitter(options.with_slope_max_per_nm(Some(limit)))?,
             })
         });
