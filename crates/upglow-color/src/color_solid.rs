@@ -199,13 +199,14 @@ impl FromIterator<[f64; 3]> for Simplex {
 }
 
 /// The point of the convex hull of some points nearest to the origin, and the corners of the face it
-/// lies in.
+/// lies in, which the last point is one of: the others alone were known not to be nearer.
 fn nearest_of_simplex(corners: &Simplex) -> ([f64; 3], Simplex) {
-    let masks = (1..1_u32 << corners.count).filter(|mask| mask.count_ones() as usize <= FACE);
+    let last = 1_u32 << (corners.count - 1);
+    let masks = (last..2 * last).filter(|mask| mask.count_ones() as usize <= FACE);
     let (point, mask) = masks
         .filter_map(|mask| Some((nearest_of_plane(corners.face(mask).points())?, mask)))
         .min_by(|(p, _), (q, _)| dot(*p, *p).total_cmp(&dot(*q, *q)))
-        .expect("each single corner is a face that holds its own nearest point");
+        .expect("the last corner is a face that holds its own nearest point");
     (point, corners.face(mask))
 }
 

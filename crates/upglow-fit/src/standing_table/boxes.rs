@@ -46,6 +46,8 @@ pub(super) enum Cell {
 /// A box that a surface passes through.
 #[derive(Debug, Default)]
 pub(super) struct Mixed {
+    /// Planes that touch each solid near the box: what is beyond one needs no search.
+    planes: OnceLock<[Vec<Plane>; 2]>,
     searches: AtomicU32,
     parts: OnceLock<BoxLattice>,
 }
@@ -138,8 +140,7 @@ impl BoxLattice {
     }
 
     fn settle(&self, at: [usize; 3], reach: &Reach) -> Cell {
-        let at_corners: [_; 8] =
-            std::array::from_fn(|corner| [0, 1, 2].map(|k| at[k] + (corner >> k & 1)));
+        let at_corners = corners(at);
         let corners = at_corners.map(|at| {
             *self.corners[self.corner_index(at)].get_or_init(|| reach.offsets(self.rgb(at)))
         });
@@ -149,7 +150,7 @@ impl BoxLattice {
             corners.iter().all(|corner| corner[solid].distance > 0.0)
                 && corners.iter().any(|corner| {
                     let normal = corner[solid].normal.map(f64::from);
-                    is_separated(reach.solid(solid), normal, &points)
+                    Plane::at(reach.solid(solid), normal).separates(&points)
                 })
         };
         if is_inside(REFLECTANCE) {
@@ -173,17 +174,45 @@ impl BoxLattice {
 
     /// The kind of a color in a box that a surface passes through.
     pub(super) fn kind_in(&self, mixed: &Mixed, rgb: LinearRgb, reach: &Reach) -> StandingKind {
+        let at = self.position(rgb).map(|(index, _)| index);
+        let color = reach.colorimetry.xyz_from_rgb(rgb);
+        let planes = mixed.planes.get_or_init(|| self.planes(at, reach));
+        let is_beyond = |solid: usize| planes[solid].iter().any(|p| p.separates(&[color]));
+        if is_beyond(FLUORESCENCE) {
+            return StandingKind::Unreachable;
+        }
+        let is_glowing = is_beyond(REFLECTANCE);
+        // Without a plane no corner is beyond what fluoresces, so nothing in the box is.
+        if is_glowing && planes[FLUORESCENCE].is_empty() {
+            return StandingKind::NeedsFluorescence;
+        }
         let searches = mixed.searches.fetch_add(1, Ordering::Relaxed);
         if self.depth >= DEEPEST || (searches < OFTEN && mixed.parts.get().is_none()) {
-            return reach.kind(rgb);
+            return match is_glowing {
+                true => reach.kind_beyond_reflectance(color),
+                false => reach.solids.kind(color),
+            };
         }
-        let at = self.position(rgb).map(|(index, _)| index);
         let parts = mixed.parts.get_or_init(|| self.parts(at));
         match parts.cell(rgb, reach) {
             Cell::Settled(kind) => *kind,
             Cell::Divided(_) => unreachable!("boxes this small are only divided after searches"),
             Cell::Mixed(mixed) => parts.kind_in(mixed, rgb, reach),
         }
+    }
+
+    /// Planes that touch each solid, in the directions of the corners outside of it.
+    fn planes(&self, at: [usize; 3], reach: &Reach) -> [Vec<Plane>; 2] {
+        [REFLECTANCE, FLUORESCENCE].map(|solid| {
+            let offsets = corners(at).map(|at| {
+                let corner = self.corners[self.corner_index(at)].get();
+                corner.expect("a box is examined by its corners")[solid]
+            });
+            let outside = offsets.into_iter().filter(|offset| offset.distance > 0.0);
+            outside
+                .map(|offset| Plane::at(reach.solid(solid), offset.normal.map(f64::from)))
+                .collect()
+        })
     }
 
     fn corner_index(&self, [r, g, b]: [usize; 3]) -> usize {
@@ -217,6 +246,14 @@ impl Reach {
         self.solids.kind(self.colorimetry.xyz_from_rgb(rgb))
     }
 
+    /// The kind of a color that no reflectance reaches, by search.
+    fn kind_beyond_reflectance(&self, color: Xyz) -> StandingKind {
+        match self.solids.fluorescence.contains(color) {
+            true => StandingKind::NeedsFluorescence,
+            false => StandingKind::Unreachable,
+        }
+    }
+
     fn solid(&self, index: usize) -> &ColorSolid {
         [&self.solids.reflectance, &self.solids.fluorescence][index]
     }
@@ -246,11 +283,34 @@ impl Reach {
     }
 }
 
-/// Whether a plane with this normal of about unit length separates all `points` from `solid`.
-fn is_separated(solid: &ColorSolid, normal: [f64; 3], points: &[Xyz]) -> bool {
-    let height = |p: Xyz| (0..3).map(|k| normal[k] * p.0[k]).sum::<f64>();
-    let surface = height(solid.support(normal));
-    points.iter().all(|&point| height(point) - surface > WELL_OUTSIDE)
+/// Where the eight corners of a box are.
+fn corners(at: [usize; 3]) -> [[usize; 3]; 8] {
+    std::array::from_fn(|corner| [0, 1, 2].map(|k| at[k] + (corner >> k & 1)))
+}
+
+/// A plane that touches a solid.
+#[derive(Clone, Copy, Debug)]
+struct Plane {
+    /// Of about unit length, away from the solid.
+    normal: [f64; 3],
+    /// Of the solid, along the normal.
+    height: f64,
+}
+
+impl Plane {
+    fn at(solid: &ColorSolid, normal: [f64; 3]) -> Self {
+        let plane = Self { normal, height: 0.0 };
+        Self { height: plane.over(solid.support(normal)), ..plane }
+    }
+
+    /// Whether it separates all `points` from its solid.
+    fn separates(&self, points: &[Xyz]) -> bool {
+        points.iter().all(|&point| self.over(point) > WELL_OUTSIDE)
+    }
+
+    fn over(&self, point: Xyz) -> f64 {
+        (0..3).map(|k| self.normal[k] * point.0[k]).sum::<f64>() - self.height
+    }
 }
 
 /// Single precision, not below the value.
