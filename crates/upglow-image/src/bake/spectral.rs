@@ -71,6 +71,7 @@ impl Maker for SpectralMaker<'_> {
         let (bands, moved) = spectral.split_at_mut(self.grid.len());
         let pairs: Vec<[usize; 2]> = self.pairs().collect();
         let nm: Vec<f64> = self.grid.wavelengths_nm().collect();
+        let mut shares = vec![0.0; nm.len()];
         for (texel, rgb) in rgb.iter().enumerate() {
             let color = LinearRgb(rgb.map(f64::from));
             let mixture = self.cube.lookup(color, Interpolation::Blend);
@@ -84,8 +85,9 @@ impl Maker for SpectralMaker<'_> {
                     plane[texel] = to_single(matrix[*o][*i]);
                 }
             } else {
-                for (band, share) in bands.iter_mut().zip(mixture.reflectances(&nm)) {
-                    band[texel] = to_single(share);
+                mixture.reflectances(&nm, &mut shares);
+                for (band, share) in bands.iter_mut().zip(&shares) {
+                    band[texel] = to_single(*share);
                 }
             }
         }

@@ -224,7 +224,8 @@ impl CompactLayout {
     /// maps of dyes cannot hold materials of different pooled dyes, or more than one film, and lobes hold
     /// at most four materials.
     pub(crate) fn encode(&self, mixture: &Mixture<'_>) -> Option<Vec<f32>> {
-        let mut values = mixture.reflectances(&self.wavelengths_nm);
+        let mut values = vec![0.0; self.wavelengths_nm.len()];
+        mixture.reflectances(&self.wavelengths_nm, &mut values);
         if !mixture.is_fluorescent() {
             values.resize(values.len() + self.map_count(), 0.0);
             return Some(values.into_iter().map(to_single).collect());

@@ -66,19 +66,6 @@ impl<'m> Mixture<'m> {
         matrix
     }
 
-    /// [`Bispectral::reflectance`] at each of these wavelengths, nm.
-    pub fn reflectances(&self, lambda_nm: &[f64]) -> Vec<f64> {
-        if self.is_fluorescent() {
-            return lambda_nm.iter().map(|&nm| self.reflectance(nm)).collect();
-        }
-        let mut sums = vec![0.0; lambda_nm.len()];
-        for (weight, material) in self.parts() {
-            let shown = lambda_nm.iter().map(|&nm| weight * material.reflectance.at(nm));
-            sums.iter_mut().zip(shown).for_each(|(sum, share)| *sum += share);
-        }
-        sums
-    }
-
     /// The color of the mixture under the light of `sums`, which must be of the same model.
     ///
     /// # Examples
@@ -139,6 +126,19 @@ impl Bispectral for Mixture<'_> {
                 weight * (1.0 - absorbed) * material.reflectance.at(lambda_nm)
             })
             .sum()
+    }
+
+    fn reflectances(&self, lambda_nm: &[f64], shares: &mut [f64]) {
+        let each = shares.iter_mut().zip(lambda_nm);
+        if self.is_fluorescent() {
+            return each.for_each(|(share, nm)| *share = self.reflectance(*nm));
+        }
+        each.for_each(|(share, _)| *share = 0.0);
+        for (weight, material) in self.parts() {
+            for (share, nm) in shares.iter_mut().zip(lambda_nm) {
+                *share += weight * material.reflectance.at(*nm);
+            }
+        }
     }
 
     fn reradiation_per_nm(&self, in_nm: f64, out_nm: f64) -> f64 {
@@ -256,7 +256,9 @@ mod tests {
                 for first in [material(&model, u), Material::passive(Sigmoid::flat(u[0]))] {
                     let mixture = Mixture::new(&model, [(t, first), (1.0 - t, passive), nothing, nothing]);
                     let each: Vec<f64> = nm.iter().map(|&nm| mixture.reflectance(nm)).collect();
-                    prop_assert_eq!(mixture.reflectances(&nm), each);
+                    let mut together = vec![0.0; nm.len()];
+                    mixture.reflectances(&nm, &mut together);
+                    prop_assert_eq!(together, each);
                 }
             }
         }
