@@ -194,6 +194,66 @@ def test_wrong_arguments_are_refused(cube, call, error, message) -> None:
         call(cube)
 
 
+UNITS = [(0.55, "µm"), (5.5e-7, "m"), (5500.0, "Å")]
+
+
+@pytest.mark.parametrize(("wrong", "unit"), UNITS)
+def test_wavelengths_in_other_units_are_refused(cube, wrong: float, unit: str) -> None:
+    gray, u = [0.5, 0.5, 0.5], [0.5, 0.5]
+    expected = f"_nm is {wrong:g}, expected nm, 100 to 4000; it looks like {unit}$"
+    for call in (
+        lambda nm: cube.reflectance(gray, nm),
+        lambda nm: cube.albedo(gray, [nm, nm]),
+        lambda nm: cube.reradiation(gray, nm, 550),
+        lambda nm: cube.reradiation(gray, 450, nm),
+        lambda nm: cube.sample_incident(gray, nm, u),
+        lambda nm: cube.sample_outgoing(gray, nm, u),
+        lambda nm: cube.incident_pdf_per_nm(gray, nm, 550),
+        lambda nm: cube.outgoing_pdf_per_nm(gray, 450, nm),
+        lambda nm: cube.incident_elastic_probability(gray, nm),
+        lambda nm: cube.outgoing_elastic_probability(gray, nm),
+        lambda nm: upglow.Illuminant(([nm, 2 * nm], [1, 1])),
+        lambda nm: upglow.Observer(([nm, 2 * nm], np.ones((2, 3)))),
+    ):
+        with pytest.raises(ValueError, match=expected):
+            call(wrong)
+
+
+def test_whole_numbers_that_are_no_nm_are_refused_and_nan_stays(cube) -> None:
+    for call in (cube.reradiation_matrix, cube.radiance_factor):
+        with pytest.raises(ValueError, match="wavelengths_nm is 5000, expected nm, 100 to 4000"):
+            call([0.5, 0.5, 0.5], [5000, 5010])
+    with pytest.raises(ValueError, match="expected nm"):
+        cube.reflectance([0.5, 0.5, 0.5], np.inf)
+    # Draws give NaN where the light is absorbed, which may be asked about.
+    assert np.shape(cube.reradiation([0.5, 0.5, 0.5], [np.nan, 450], 550)) == (2,)
+
+
+def test_masked_arrays_are_refused(cube) -> None:
+    def masked(values):
+        array = np.ma.array(np.asarray(values, dtype=np.float64))
+        array[..., 0] = np.ma.masked
+        return array
+
+    rgb, nm = masked([[0.5, 0.5, 0.5]]), masked([450.0, 550.0])
+    gray = [0.5, 0.5, 0.5]
+    for call in (
+        lambda: cube.xyz(rgb),
+        lambda: cube.material(rgb),
+        lambda: cube.fit(rgb),
+        lambda: cube.check([rgb[0], gray]),
+        lambda: upglow.standing(rgb),
+        lambda: cube.reflectance(gray, nm),
+        lambda: cube.reradiation(gray, nm, 550),
+        lambda: cube.reradiation_matrix(gray, nm),
+        lambda: cube.sample_incident(gray, 500, masked([0.5, 0.5])),
+        lambda: upglow.Illuminant((nm, [1, 1])),
+        lambda: upglow.Illuminant(([450, 550], masked([1, 1]))),
+    ):
+        with pytest.raises(TypeError, match="is a masked array, expected one without mask"):
+            call()
+
+
 def test_materials_of_another_cube_give_nan(cube) -> None:
     materials = upglow.build(model=upglow.Dyes(set="wide14"), resolution=4).nodes
     foreign = materials.dyes[..., 0] >= 8

@@ -22,9 +22,17 @@ Nm = ArrayLike
 """One wavelength or an array of them, nm."""
 
 
+def unmasked(what: str, values: Any) -> NDArray[Any]:
+    """The array of what a caller gives; masked ones are refused, because an array loses the mask."""
+    parts = values if isinstance(values, (list, tuple)) else (values,)
+    if any(isinstance(part, np.ma.MaskedArray) for part in parts):
+        raise TypeError(f"{what} is a masked array, expected one without mask: see filled()")
+    return np.asarray(values)
+
+
 def rgb_array(rgb: ArrayLike) -> NDArray[Any]:
     """RGB of shape (..., 3): float32 stays float32, all other types become float64."""
-    array = np.asarray(rgb)
+    array = unmasked("rgb", rgb)
     if array.dtype.kind not in "fiu":
         raise TypeError(f"rgb has dtype {array.dtype}, expected numbers")
     if array.ndim == 0 or array.shape[-1] != 3:

@@ -24,6 +24,7 @@ from ._arrays import (
     rows,
     single_rows,
     subjects,
+    unmasked,
     within,
 )
 from ._contract import Contract
@@ -33,7 +34,7 @@ from ._models import Model
 from ._progress import Report, reporting
 from ._standing import standing
 from ._verify import Check, VerifyReport
-from ._wavelengths import FIT_NM, grid, wavelength_list
+from ._wavelengths import FIT_NM, grid, nanometers, wavelength_list
 
 if TYPE_CHECKING:
     import colour
@@ -411,7 +412,7 @@ class Cube:
         Reflection at the same wavelength is `reflectance`. ``in_nm`` and ``out_nm`` broadcast
         against the leading shape of ``of``; the result has that shape.
         """
-        return self._number("reradiation_per_nm", of, (in_nm, out_nm), outside, threads)
+        return self._number("reradiation_per_nm", of, {"in_nm": in_nm, "out_nm": out_nm}, outside, threads)
 
     def reradiation_matrix(
         self, of: Of, wavelengths_nm: Nm = FIT_NM, *, outside: str = "raise", threads: Threads = None
@@ -486,7 +487,7 @@ class Cube:
             raise ValueError(f"rgb has shape {array.shape}, expected (3,)")
         factor = self.radiance_factor(array, wavelengths_nm, light=light, outside=outside)
         name = f"{self.contract.space} {tuple(array.tolist())}"
-        nm = np.asarray(wavelengths_nm, dtype=np.float64)
+        nm = wavelength_list(wavelengths_nm)
         return colour.SpectralDistribution(factor, nm, name=name)
 
     # Sampling
@@ -501,7 +502,8 @@ class Cube:
         draws the wavelength. ``out_nm`` and ``u[..., 0]`` broadcast against the leading shape of
         ``of``.
         """
-        return self._sample("sample_incident", of, out_nm, u, outside, threads)
+        known_nm = nanometers("out_nm", out_nm)
+        return self._sample("sample_incident", of, known_nm, u, outside, threads)
 
     def sample_outgoing(
         self, of: Of, in_nm: Nm, u: ArrayLike, *, outside: str = "raise", threads: Threads = None
@@ -510,7 +512,8 @@ class Cube:
 
         For paths that start at a light; arguments as in `sample_incident`.
         """
-        return self._sample("sample_outgoing", of, in_nm, u, outside, threads)
+        known_nm = nanometers("in_nm", in_nm)
+        return self._sample("sample_outgoing", of, known_nm, u, outside, threads)
 
     def incident_pdf_per_nm(
         self, of: Of, in_nm: Nm, out_nm: Nm, *, outside: str = "raise", threads: Threads = None
@@ -519,7 +522,7 @@ class Cube:
 
         Shapes as in `reradiation`.
         """
-        return self._number("incident_pdf_per_nm", of, (in_nm, out_nm), outside, threads)
+        return self._number("incident_pdf_per_nm", of, {"in_nm": in_nm, "out_nm": out_nm}, outside, threads)
 
     def outgoing_pdf_per_nm(
         self, of: Of, in_nm: Nm, out_nm: Nm, *, outside: str = "raise", threads: Threads = None
@@ -528,19 +531,19 @@ class Cube:
 
         Shapes as in `reradiation`.
         """
-        return self._number("outgoing_pdf_per_nm", of, (in_nm, out_nm), outside, threads)
+        return self._number("outgoing_pdf_per_nm", of, {"in_nm": in_nm, "out_nm": out_nm}, outside, threads)
 
     def incident_elastic_probability(
         self, of: Of, out_nm: Nm, *, outside: str = "raise", threads: Threads = None
     ) -> NDArray[Any]:
         """Probability, 0 to 1, that `sample_incident` keeps the wavelength."""
-        return self._number("incident_elastic_probability", of, (out_nm,), outside, threads)
+        return self._number("incident_elastic_probability", of, {"out_nm": out_nm}, outside, threads)
 
     def outgoing_elastic_probability(
         self, of: Of, in_nm: Nm, *, outside: str = "raise", threads: Threads = None
     ) -> NDArray[Any]:
         """Probability, 0 to 1, that `sample_outgoing` keeps the wavelength."""
-        return self._number("outgoing_elastic_probability", of, (in_nm,), outside, threads)
+        return self._number("outgoing_elastic_probability", of, {"in_nm": in_nm}, outside, threads)
 
     def _spectrum(
         self, quantity: str, of: Of, wavelengths_nm: Nm, outside: str, threads: Threads
@@ -554,7 +557,7 @@ class Cube:
     def _sample(
         self, question: str, of: Of, known_nm: Nm, u: ArrayLike, outside: str, threads: Threads
     ) -> Samples:
-        numbers = np.asarray(u, dtype=np.float64)
+        numbers = unmasked("u", u).astype(np.float64, copy=False)
         if numbers.ndim == 0 or numbers.shape[-1] != 2:
             raise ValueError(f"u has shape {numbers.shape}, expected (..., 2)")
         if not np.all((numbers >= 0.0) & (numbers < 1.0)):
@@ -565,8 +568,9 @@ class Cube:
         return Samples(nm, throughput, pdf, is_elastic == 1.0)
 
     def _number(
-        self, question: str, of: Of, given: Sequence[ArrayLike], outside: str, threads: Threads
+        self, question: str, of: Of, known: dict[str, ArrayLike], outside: str, threads: Threads
     ) -> NDArray[Any]:
+        given = [nanometers(name, nm) for name, nm in known.items()]
         return _shaped(*self._answer(question, of, given, outside, threads))
 
     def _answer(
