@@ -21,6 +21,8 @@ pub(super) struct TgaPicture {
     pixel: Pixel,
     colors: Option<Map>,
     packet: Packet,
+    /// Where the rows begin, of a picture whose first row is the lowest; empty for others.
+    starts: Vec<(u64, Packet)>,
 }
 
 /// How a pixel, or an entry of the color map, is stored.
@@ -50,7 +52,7 @@ struct Map {
 }
 
 /// What is left of a packet, which may go on in the next row.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 enum Packet {
     /// Pixels as they are.
     Plain(usize),
@@ -131,17 +133,33 @@ impl TgaPicture {
             color: StatedColor { space: Stated::No, encoding: Stated::No },
             last_sample: last_sample(stored, alpha_bits, attributes),
             windows: None,
-            // The origin is at the bottom unless bit 5 is set, and at the left unless bit 4 is.
-            orientation: match descriptor >> 4 & 3 {
-                0 => 4,
-                1 => 3,
-                2 => 1,
-                _ => 2,
-            },
+            // Rows are read from the top. They begin at the left unless bit 4 is set.
+            orientation: if descriptor & 0x10 == 0 { 1 } else { 2 },
         };
         let (width, is_packed) = (size[0], kind >= 9);
-        let packet = Packet::Plain(0);
-        Ok((Box::new(Self { file, width, is_packed, pixel, colors, packet }), facts))
+        let (packet, starts) = (Packet::Plain(0), Vec::new());
+        let mut picture = Self { file, width, is_packed, pixel, colors, packet, starts };
+        // The first row is the lowest unless bit 5 is set.
+        if descriptor & 0x20 == 0 {
+            picture.find_rows(size[1])?;
+        }
+        Ok((Box::new(picture), facts))
+    }
+
+    /// Finds where the rows begin. Rows in packets must be read for that.
+    fn find_rows(&mut self, rows: usize) -> Result<(), PictureError> {
+        let mut row = vec![0; self.width * self.pixel.bytes()];
+        let mut at = self.file.stream_position()?;
+        for _ in 0..rows {
+            self.starts.push((at, self.packet));
+            if self.is_packed {
+                self.row(&mut row)?;
+                at = self.file.stream_position()?;
+            } else {
+                at += row.len() as u64;
+            }
+        }
+        Ok(())
     }
 
     /// Reads the bytes of a row.
@@ -187,6 +205,10 @@ impl Source for TgaPicture {
         let mut row = vec![0; self.width * self.pixel.bytes()];
         let mut samples = Vec::new();
         for _ in rows {
+            if let Some((at, packet)) = self.starts.pop() {
+                self.file.seek(SeekFrom::Start(at))?;
+                self.packet = packet;
+            }
             self.row(&mut row)?;
             match &self.colors {
                 Some(map) => map.add_colors(&row, self.pixel.bytes(), &mut samples)?,

@@ -226,7 +226,7 @@ fn damaged_and_other_files_are_refused() {
     for kind in kinds() {
         for is_packed in [false, true] {
             let whole = File { is_packed, ..kind }.bytes();
-            for length in 0..whole.len() {
+            for length in (0..whole.len()).step_by(7) {
                 let found = read(&path, &whole[..length], Some(DeclaredAlpha::Straight));
                 let message = found.unwrap_err();
                 assert_eq!(message, "damaged: it ends too early, expected a whole TGA picture");
