@@ -65,7 +65,7 @@ impl CheckReport {
             sentence += &format!("; {} is further off", share(beyond));
             // Less than half of them explain nothing.
             if 2 * count > beyond {
-                sentence += &format!(", {most}{colors} {why}");
+                sentence += &format!(": {most}{colors} {why}");
             }
         }
         if outside > 0 {

@@ -62,6 +62,7 @@ th, td { text-align: left; vertical-align: middle; padding: 5px 14px 5px 0; bord
 thead th { color: var(--soft); font-size: 13px; }
 .number { text-align: right; padding-right: 26px; white-space: nowrap; }
 .name { white-space: nowrap; }
+.why { min-width: 200px; }
 .place { white-space: nowrap; margin-right: 18px; }
 .swatch { display: inline-block; width: 54px; height: 22px; border-radius: 4px; margin-right: 10px; vertical-align: middle; }
 @media (max-width: 640px) {

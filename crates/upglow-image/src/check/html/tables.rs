@@ -148,7 +148,7 @@ fn missed_row(texel: &MissedTexel) -> String {
     format!(
         "<tr><td class=\"name\">{}, {}</td><td class=\"name\">{r}, {g}, {b}</td><td class=\"number\"><b>{:.2}</b></td>\
          <td>{own}</td><td>{made}</td><td class=\"name\">{any}{nearest}</td>{}\
-         <td class=\"number\">{baked}</td><td>{}</td></tr>\n",
+         <td class=\"number\">{baked}</td><td class=\"why\">{}</td></tr>\n",
         texel.x,
         texel.y,
         texel.de2000,
