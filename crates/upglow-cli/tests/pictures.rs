@@ -80,6 +80,13 @@ fn check_says_what_each_texel_needs() {
     assert!(folder.read("heat.png").starts_with(b"\x89PNG"));
     assert!(page.contains("<b>75.0 %</b> missed <small>3</small>"), "{page}");
     let text = folder.done("check tile.exr --cube cube");
+    let headline = found["headline"].as_str().unwrap();
+    let within = 100.0 * found["cube"]["within_one"].as_f64().unwrap();
+    let said = format!("{within:.1} % of this picture is within 1 ΔE00");
+    assert!(headline.starts_with(&said), "{headline}");
+    assert!(text.starts_with("result:") && text.lines().next().unwrap().ends_with(headline));
+    assert_eq!(found["cube"]["worst"][0]["de2000"], found["cube"]["greatest_de2000"]);
+    assert!(text.contains("(--preset natural): about "), "{text}");
     assert!(text.contains("missed:               3   75.00 %  ΔE00 > 0.01"), "{text}");
     assert!(text.contains("fluorescence needed:  25.00 %"), "{text}");
     assert!(text.contains("1,1 (0.0000, 1.0000, 0.0000): nothing shows it"), "{text}");
