@@ -57,8 +57,8 @@ pub(crate) struct BakeArgs {
     pub(crate) cube: PathBuf,
     #[arg(required = true, value_name = "IN", help = inputs_help())]
     pub(crate) inputs: Vec<PathBuf>,
-    /// File to write for one picture, EXR or also PNG with --as radiance, or folder for several;
-    /// created if it does not exist
+    /// File to write for one picture, EXR or also PNG with --as radiance; file with <UDIM> or %04d in its
+    /// name, or folder, for several; folders are created if they do not exist
     #[arg(long, short, value_name = "OUT")]
     pub(crate) output: PathBuf,
     /// Skip pictures whose output was made from the same picture, cube and options
