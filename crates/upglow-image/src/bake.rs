@@ -4,6 +4,7 @@ mod attributes;
 mod blends;
 mod compact;
 mod half_reflectance;
+mod levels;
 mod maker;
 mod material;
 pub(crate) mod material_picture;
@@ -21,10 +22,12 @@ use std::path::Path;
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 use upglow::{Cube, LookupError};
+use upglow_color::rounding::to_single;
 use upglow_color::{Grid, Illuminant, LinearRgb};
 use upglow_fit::{FitOptionsError, KindCounts, StandingTable, Stopped, Watch};
 
 use self::compact::CompactMaker;
+use self::levels::{LevelRows, Levels};
 use self::maker::{Filled, Maker};
 use self::material::MaterialMaker;
 use self::output::Output;
@@ -33,7 +36,9 @@ use self::radiance::RadianceMaker;
 use self::repair::{Repair, Repairer, greatest_value};
 use self::screen::ScreenMaker;
 use self::spectral::SpectralMaker;
+use crate::exr::attribute::Attribute;
 use crate::exr::header::Sample;
+use crate::exr::mipmap::{MipmapWriter, TILE, Tile, tile_counts};
 use crate::exr::reader::ExrReader;
 use crate::exr::writer::{ExrDescription, ExrWriter, WriteExrError};
 use crate::picture::Picture;
@@ -101,6 +106,21 @@ pub struct BakeOptions {
     /// Half or float. The compact form of lobes is always float, because rounded positions on the ring
     /// of dyes would be other colors.
     pub sample: Sample,
+    /// How OpenEXR files are stored.
+    pub layout: Layout,
+}
+
+/// How an OpenEXR file is stored.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Layout {
+    /// Rows.
+    #[default]
+    Rows,
+    /// Tiles of 64² at all levels down to one texel, as texture systems read them. The colors of a level
+    /// are filtered, never what is made of them: each is the mean of the colors that it covers in the
+    /// level before, by area and alpha, and every level is baked from its own.
+    Mipmap,
 }
 
 /// Facts about a baked file.
@@ -262,7 +282,7 @@ impl<'c> Baker<'c> {
         let mut baked = Baked {
             size,
             interpretation: picture.interpretation().clone(),
-            channels: 0,
+            channels: self.channels.len() + usize::from(picture.picture().has_alpha()),
             repaired: 0,
             beyond_screen: 0,
             kinds: None,
@@ -274,10 +294,7 @@ impl<'c> Baker<'c> {
                 Some(repairer) => baked.repaired += repairer.repair(&mut band.rgb),
                 None => refuse_outside(&band)?,
             }
-            let (planes, filled) = self.planes(&band);
-            all = all.with(&filled);
-            baked.channels = planes.len();
-            writer.write_band(&planes)?;
+            all = all.with(&self.write(&mut writer, &band)?);
             Ok::<_, BakeError>(())
         })?;
         baked.bytes = writer.finish()?;
@@ -332,6 +349,50 @@ impl<'c> Baker<'c> {
         Ok(Repairer { repair, greatest, table })
     }
 
+    /// Makes and writes the channels of a band; returns facts about its texels.
+    fn write(&self, output: &mut Output, band: &Band) -> Result<Filled, BakeError> {
+        let Output::Mipmap(mipmap) = output else {
+            let (planes, filled) = self.planes(band);
+            output.write_band(&planes)?;
+            return Ok(filled);
+        };
+        let (levels, writer) = &mut **mipmap;
+        let mut all = Filled::default();
+        for rows in levels.push(band) {
+            let filled = self.write_tiles(writer, &rows)?;
+            if rows.level == 0 {
+                all = all.with(&filled);
+            }
+        }
+        Ok(all)
+    }
+
+    /// Makes and writes a row of tiles, as many at a time as a band may have.
+    fn write_tiles(
+        &self,
+        writer: &mut MipmapWriter,
+        LevelRows { level, rows }: &LevelRows,
+    ) -> Result<Filled, BakeError> {
+        let [across, _] = tile_counts([rows.width, 1]);
+        let tile_bytes = size_of::<f32>() * TILE * TILE * self.channels.len();
+        let together = (BAND_BYTES / tile_bytes).max(1);
+        let columns: Vec<usize> = (0..across).collect();
+        let mut all = Filled::default();
+        for columns in columns.chunks(together) {
+            let made = columns.par_iter().map(|column| {
+                let tile = rows.columns(column * TILE..rows.width.min((column + 1) * TILE));
+                let (planes, filled) = self.planes(&tile);
+                Ok((*column, writer.packed(tile.width, &planes)?, filled))
+            });
+            for (column, packed, filled) in made.collect::<Result<Vec<_>, BakeError>>()? {
+                let at = [column, rows.first_row / TILE];
+                writer.write(Tile { level: *level, at }, &packed)?;
+                all = all.with(&filled);
+            }
+        }
+        Ok(all)
+    }
+
     /// The channels of a band, alpha last, and facts about them.
     fn planes(&self, band: &Band) -> (Vec<Vec<f32>>, Filled) {
         let mut planes = vec![vec![0.0; band.rgb.len()]; self.channels.len()];
@@ -365,6 +426,18 @@ impl<'c> Baker<'c> {
         } else {
             let mut description = self.description(picture);
             description.attributes.insert(attributes::MADE.into(), made.into());
+            if self.options.layout == Layout::Mipmap {
+                let [width, height] = picture.size();
+                let aspect = to_single(width as f64 / height as f64);
+                description.attributes.extend([
+                    ("fovcot".to_owned(), Attribute::singles("float", &[aspect])),
+                    ("textureformat".to_owned(), "Plain Texture".into()),
+                    ("wrapmodes".to_owned(), "black,black".into()),
+                ]);
+                let levels = Levels::new(picture.size(), picture.has_alpha());
+                let writer = MipmapWriter::create(path, description)?;
+                return Ok(Output::Mipmap(Box::new((levels, writer))));
+            }
             Output::Exr(ExrWriter::create(path, description)?)
         })
     }
@@ -382,6 +455,9 @@ impl<'c> Baker<'c> {
     }
 
     fn band_rows(&self, width: usize) -> usize {
+        if self.options.layout == Layout::Mipmap {
+            return TILE;
+        }
         let row_bytes = size_of::<f32>() * width * self.channels.len();
         (BAND_BYTES / row_bytes.max(1)).clamp(1, BAND_ROWS)
     }

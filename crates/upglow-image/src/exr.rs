@@ -4,6 +4,7 @@ pub(crate) mod attribute;
 mod blocks;
 pub(crate) mod error;
 pub(crate) mod header;
+pub(crate) mod mipmap;
 pub(crate) mod reader;
 #[cfg(test)]
 mod tests;

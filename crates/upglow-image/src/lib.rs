@@ -47,7 +47,7 @@ mod spectral;
 pub use bake::material_picture::MaterialPicture;
 pub use bake::png::PngBits;
 pub use bake::repair::Repair;
-pub use bake::{BakeError, BakeOptions, Baked, Baker, Form};
+pub use bake::{BakeError, BakeOptions, Baked, Baker, Form, Layout};
 pub use check::{
     BeyondOne, Cause, Change, CheckError, CheckReport, Checker, ColorDifference, Counts, CubeMatch,
     DyeUse, Flaw, FlawedTexel, MissedTexel, UsedDye, WiderSpace, WorstTexel,

@@ -106,17 +106,21 @@ pub(crate) struct ResultArgs {
         )
     )]
     pub(crate) lights: Vec<String>,
-    /// exr holds linear colors in the RGB space of the cube; png holds what a screen shows, in sRGB,
+    /// exr is read by rows; tx is an EXR file of tiles at all levels, for texture systems, each level
+    /// baked from filtered colors; both hold linear colors in the RGB space of the cube; png holds what a screen shows, in sRGB,
     /// adapted to the light (radiance only) [default: by the suffix of OUT, exr for folders]
     #[arg(long, value_name = "NAME", value_parser = word::<BakeFormat>())]
     pub(crate) format: Option<BakeFormat>,
+    /// The same as --format tx
+    #[arg(long, conflicts_with = "format")]
+    pub(crate) tx: bool,
     /// Bits of each sample: 8 or 16 (png only) [default: 8]
     #[arg(long, value_name = "N", value_parser = word::<PngBits>())]
     pub(crate) bits: Option<PngBits>,
     /// By how many stops the light is brighter, -20 to 20 (png only) [default: 0]
     #[arg(long, value_name = "STOPS", value_parser = stops, allow_hyphen_values = true)]
     pub(crate) exposure: Option<f64>,
-    /// Number format of the channels: 16-bit half or 32-bit float (exr only) [default: half]
+    /// Number format of the channels: 16-bit half or 32-bit float (exr and tx only) [default: half]
     #[arg(long, value_name = "NAME", value_parser = word::<SampleName>())]
     pub(crate) sample: Option<SampleName>,
 }
@@ -200,10 +204,11 @@ choices!(BakeForm, "form", Material = "material", Spectral = "spectral", Radianc
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum BakeFormat {
     Exr,
+    Tx,
     Png,
 }
 
-choices!(BakeFormat, "format", Exr = "exr", Png = "png");
+choices!(BakeFormat, "format", Exr = "exr", Tx = "tx", Png = "png");
 
 /// Number formats of channels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -7,7 +7,7 @@ use serde::Serialize;
 use upglow_color::{Choice, Grid, Illuminant};
 use upglow_fit::KindCounts;
 use upglow_image::{
-    BakeError, BakeOptions, Baked, Baker, DeclaredAlpha, Form, Interpretation, Missing,
+    BakeError, BakeOptions, Baked, Baker, DeclaredAlpha, Form, Interpretation, Layout, Missing,
     PictureError,
 };
 use upglow_terminal::{Console, Failure, Report};
@@ -48,6 +48,7 @@ pub(crate) fn run(args: &BakeArgs, console: &Console) -> Result<(), Failure> {
         declared: args.picture.declared(),
         repair: args.repair,
         sample: args.result.sample.unwrap_or(SampleName::Half).into(),
+        layout: if format == BakeFormat::Tx { Layout::Mipmap } else { Layout::Rows },
     };
     let inputs = pictures::find(&args.inputs, args.picture.depth())?;
     let lights: Vec<&str> = forms.iter().filter_map(Form::light).map(Illuminant::name).collect();
@@ -120,8 +121,13 @@ const DEFAULT_BANDS: [u32; 3] = [380, 780, 10];
 fn format(args: &BakeArgs) -> BakeFormat {
     let suffix = args.output.extension().and_then(|suffix| suffix.to_str()).unwrap_or_default();
     let of_suffix = || BakeFormat::named(&suffix.to_lowercase()).ok();
-    let is_file = !args.output.is_dir() && args.form == BakeForm::Radiance;
-    args.result.format.or_else(|| of_suffix().filter(|_| is_file)).unwrap_or(BakeFormat::Exr)
+    if args.result.tx {
+        return BakeFormat::Tx;
+    }
+    let fits = |format: &BakeFormat| {
+        !args.output.is_dir() && (*format != BakeFormat::Png || args.form == BakeForm::Radiance)
+    };
+    args.result.format.or_else(|| of_suffix().filter(fits)).unwrap_or(BakeFormat::Exr)
 }
 
 /// What is written for each picture: one form, or one for each light.
@@ -140,7 +146,7 @@ fn forms(args: &BakeArgs, format: BakeFormat) -> Result<Vec<Form>, Failure> {
     let options: [(&str, bool, &[BakeFormat]); 3] = [
         ("--bits", result.bits.is_some(), &[BakeFormat::Png]),
         ("--exposure", result.exposure.is_some(), &[BakeFormat::Png]),
-        ("--sample", result.sample.is_some(), &[BakeFormat::Exr]),
+        ("--sample", result.sample.is_some(), &[BakeFormat::Exr, BakeFormat::Tx]),
     ];
     plan::refuse_ignored("--format", format, &options)?;
     match args.form {
@@ -159,7 +165,7 @@ fn forms(args: &BakeArgs, format: BakeFormat) -> Result<Vec<Form>, Failure> {
         Radiance => {
             let lights = result.lights.iter().map(|text| plan::light("--light", text));
             let form = |light| match format {
-                BakeFormat::Exr => Form::Radiance { light },
+                BakeFormat::Exr | BakeFormat::Tx => Form::Radiance { light },
                 BakeFormat::Png => Form::Screen {
                     light,
                     bits: result.bits.unwrap_or_default(),

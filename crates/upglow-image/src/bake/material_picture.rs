@@ -32,7 +32,16 @@ impl MaterialPicture {
     ///
     /// [`FormError`] if it cannot be read or holds no materials.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, FormError> {
-        let reader = ExrReader::open(path)?;
+        Self::open_level(path, 0)
+    }
+
+    /// Opens a level of a file: 0 is the full one.
+    ///
+    /// # Errors
+    ///
+    /// [`FormError`] if it cannot be read, has no such level or holds no materials.
+    pub fn open_level(path: impl AsRef<Path>, level: usize) -> Result<Self, FormError> {
+        let reader = ExrReader::open_level(path, level)?;
         let cube = read_model(reader.attributes())?;
         let names = channel_names(cube.model());
         let channels = names.map(|name| reader.channel(name)).collect::<Result<_, _>>()?;

@@ -3,7 +3,9 @@
 use std::path::Path;
 
 use super::attributes;
+use super::levels::Levels;
 use super::png::{self, PngWriter};
+use crate::exr::mipmap::MipmapWriter;
 use crate::exr::reader::ExrReader;
 use crate::exr::writer::{ExrWriter, WriteExrError};
 
@@ -12,6 +14,8 @@ use crate::exr::writer::{ExrWriter, WriteExrError};
 pub(super) enum Output {
     Exr(ExrWriter),
     Png(PngWriter),
+    /// A file of all levels.
+    Mipmap(Box<(Levels, MipmapWriter)>),
 }
 
 impl Output {
@@ -22,6 +26,7 @@ impl Output {
                 writer.write_band(&planes.iter().map(Vec::as_slice).collect::<Vec<_>>())
             }
             Self::Png(writer) => Ok(writer.write_band(planes)?),
+            Self::Mipmap(_) => Ok(()),
         }
     }
 
@@ -30,6 +35,7 @@ impl Output {
         match self {
             Self::Exr(writer) => writer.finish(),
             Self::Png(writer) => Ok(writer.finish()?),
+            Self::Mipmap(mipmap) => mipmap.1.finish(),
         }
     }
 }

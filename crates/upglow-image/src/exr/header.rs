@@ -131,6 +131,8 @@ pub(crate) struct Header {
     pub(crate) size: [usize; 2],
     /// Width and height of a tile, if the image is stored in tiles.
     pub(crate) tiles: Option<[usize; 2]>,
+    /// Whether there are levels of half the sides, rounded down, to one pixel.
+    pub(crate) is_mipmap: bool,
     /// Blocks of all levels; files of many parts state it.
     pub(crate) chunk_count: Option<usize>,
     /// Name of the part, if it has one.
@@ -246,13 +248,15 @@ fn build(mut attributes: Attributes, version: u32) -> Result<Header, ExrError> {
         }
         None => version & TILED != 0,
     };
+    let tiles = tiled.then(|| parse_tiles(value("tiles", "tiledesc")?)).transpose()?;
     let header = Header {
         channels: parse_channels(value("channels", "chlist")?)?,
         method: parse_method(value("compression", "compression")?)?,
         data,
         display: window("displayWindow")?,
         size,
-        tiles: tiled.then(|| parse_tiles(value("tiles", "tiledesc")?)).transpose()?,
+        tiles: tiles.map(|(size, _)| size),
+        is_mipmap: tiles.is_some_and(|(_, is_mipmap)| is_mipmap),
         chunk_count: stated("chunkCount", "int")?.map(parse_count).transpose()?,
         name: stated("name", "string")?.map(|name| String::from_utf8_lossy(name).into_owned()),
         attributes: Attributes::new(),
@@ -294,18 +298,19 @@ fn parse_method(bytes: &[u8]) -> Result<Method, ExrError> {
     })
 }
 
-fn parse_tiles(bytes: &[u8]) -> Result<[usize; 2], ExrError> {
+/// The size of tiles, and whether there are all levels, rounded down.
+fn parse_tiles(bytes: &[u8]) -> Result<([usize; 2], bool), ExrError> {
     let wrong = |found: String| {
         ExrError::header("tiles", found, format!("width and height from 1 to {MAX_SIDE}"))
     };
-    let ([width, height], [_mode]) = bytes.as_chunks::<4>() else {
+    let ([width, height], [mode]) = bytes.as_chunks::<4>() else {
         return Err(wrong(format!("{} bytes", bytes.len())));
     };
     let size = [width, height].map(|side| u32::from_le_bytes(*side) as usize);
     if size.iter().any(|side| !(1..=MAX_SIDE).contains(side)) {
         return Err(wrong(format!("{} by {}", size[0], size[1])));
     }
-    Ok(size)
+    Ok((size, *mode == MIPMAP_ROUND_DOWN))
 }
 
 /// Bytes after the name of a channel: sample type, flag and padding, subsampling in x and y.
@@ -389,24 +394,49 @@ impl<R: Read> Bytes<R> {
     }
 }
 
-/// The header of a file that has one part and is stored by rows.
+/// How the blocks of an image are stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Arrangement {
+    /// Rows, from the top.
+    Rows,
+    /// Square tiles of this side, at all levels down to one pixel, in any order.
+    Mipmap {
+        /// Pixels.
+        side: u32,
+    },
+}
+
+/// Levels of an image in tiles: all down to one pixel, each of half the sides, rounded down.
+const MIPMAP_ROUND_DOWN: u8 = 1;
+
+/// The header of a file that has one part.
 ///
 /// `channels` are sorted by name.
 pub(crate) fn print(
     channels: &[Channel],
     method: Method,
     [data, display]: [Window; 2],
+    arrangement: Arrangement,
     attributes: &Attributes,
 ) -> Vec<u8> {
     let code = METHODS.iter().position(|known| *known == method).expect("a method of the list");
     let code = u8::try_from(code).expect("there are ten");
     let mut all = attributes.clone();
+    let (line_order, tiled) = match arrangement {
+        Arrangement::Rows => (0, 0),
+        Arrangement::Mipmap { side } => {
+            let sides = [side.to_le_bytes(); 2];
+            let tiles = [sides.as_flattened(), &[MIPMAP_ROUND_DOWN]].concat();
+            all.insert("tiles".into(), Attribute::new("tiledesc", tiles));
+            (2, TILED)
+        }
+    };
     let fields = [
         ("channels", Attribute::new("chlist", print_channels(channels))),
         ("compression", Attribute::new("compression", vec![code])),
         ("dataWindow", Attribute::new("box2i", data.to_bytes())),
         ("displayWindow", Attribute::new("box2i", display.to_bytes())),
-        ("lineOrder", Attribute::new("lineOrder", vec![0])),
+        ("lineOrder", Attribute::new("lineOrder", vec![line_order])),
         ("pixelAspectRatio", Attribute::singles("float", &[1.0])),
         ("screenWindowCenter", Attribute::singles("v2f", &[0.0; 2])),
         ("screenWindowWidth", Attribute::singles("float", &[1.0])),
@@ -414,9 +444,9 @@ pub(crate) fn print(
     all.extend(fields.map(|(name, value)| (name.to_owned(), value)));
     let channel_names = channels.iter().map(|c| c.name.len());
     let longest = all.keys().map(String::len).chain(channel_names).max().unwrap_or(0);
-    let flags = if longest > SHORT_NAME { LONG_NAMES } else { 0 };
+    let long = if longest > SHORT_NAME { LONG_NAMES } else { 0 };
     let mut bytes = MAGIC.to_vec();
-    bytes.extend((u32::from(VERSION) | flags).to_le_bytes());
+    bytes.extend((u32::from(VERSION) | long | tiled).to_le_bytes());
     for (name, Attribute { kind, bytes: value }) in &all {
         for text in [name, kind] {
             bytes.extend(text.as_bytes());
@@ -460,7 +490,8 @@ mod tests {
         ]);
         let display = Window::of_size([7, 9]);
         let data = Window { min: [-1, 2], max: [3, 8] };
-        let bytes = print(&channels, Method::ZIP16, [data, display], &attributes);
+        let bytes =
+            print(&channels, Method::ZIP16, [data, display], Arrangement::Rows, &attributes);
         (channels, attributes, bytes)
     }
 
@@ -487,7 +518,13 @@ mod tests {
     #[test]
     fn invalid_sizes_are_refused() {
         let message = |window: Window| {
-            let bytes = print(&[], Method::Uncompressed, [window; 2], &Attributes::new());
+            let bytes = print(
+                &[],
+                Method::Uncompressed,
+                [window; 2],
+                Arrangement::Rows,
+                &Attributes::new(),
+            );
             Headers::read(&bytes[..]).unwrap_err().to_string()
         };
         let huge = message(Window { min: [0, 0], max: [i32::MAX, 3] });

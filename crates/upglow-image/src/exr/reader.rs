@@ -11,6 +11,7 @@ use super::attribute::Attributes;
 use super::blocks::{Block, Blocks, MAX_BLOCK_BYTES, UNPACKING, Unpacker, decode, pixel_bytes};
 use super::error::{ExrError, listed};
 use super::header::{Channel, Header, Headers, Sample, Window};
+use super::mipmap::level_sizes;
 
 /// One image of an OpenEXR file, opened for reading.
 ///
@@ -31,6 +32,8 @@ pub struct ExrReader {
     kept: Vec<(Block, Vec<u8>)>,
     /// Number of the part, which each block of a multi-part file repeats.
     part: Option<i32>,
+    /// Number of the level, which each tile repeats.
+    level: i32,
 }
 
 impl ExrReader {
@@ -41,6 +44,33 @@ impl ExrReader {
     /// [`ExrError`] if it cannot be read or is not a valid OpenEXR file of a kind that is read.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, ExrError> {
         Self::open_with(path.as_ref(), |_| Ok(0))
+    }
+
+    /// Opens a level of the first part of a file: 0 is the full one, the last one has one pixel.
+    ///
+    /// # Errors
+    ///
+    /// [`ExrError`] if it cannot be read or has no such level.
+    pub fn open_level(path: impl AsRef<Path>, level: usize) -> Result<Self, ExrError> {
+        let mut reader = Self::open(path)?;
+        if level == 0 {
+            return Ok(reader);
+        }
+        let has_levels = reader.header.is_mipmap && reader.part.is_none();
+        let sizes = if has_levels { level_sizes(reader.size()) } else { vec![reader.size()] };
+        let Some(&size) = sizes.get(level) else {
+            let expected = format!("0 to {}", sizes.len() - 1);
+            return Err(ExrError::invalid(format!("level {level}"), expected));
+        };
+        // Tiles do not shrink with the image, except at its border.
+        let tiles = |size| Blocks::of(&Header { size, ..reader.header.clone() });
+        let before: usize =
+            sizes[..level].iter().map(|&size| tiles(size).counts()).map(|[x, y]| x * y).sum();
+        reader.table += 8 * before as u64;
+        reader.blocks = tiles(size);
+        reader.header.size = size;
+        reader.level = i32::try_from(level).unwrap_or(i32::MAX);
+        Ok(reader)
     }
 
     /// Whether this thread is decompressing a block. A panic there is caught and becomes an error of
@@ -94,6 +124,7 @@ impl ExrReader {
             table,
             kept: Vec::new(),
             part,
+            level: 0,
         })
     }
 
@@ -274,7 +305,8 @@ impl ExrReader {
         let [width, height] = self.blocks.block_size();
         let position = match self.header.tiles {
             Some(_) => {
-                vec![number(block.origin[0] / width), number(block.origin[1] / height), 0, 0]
+                let [x, y] = [block.origin[0] / width, block.origin[1] / height].map(number);
+                vec![x, y, self.level, self.level]
             }
             None => vec![self.header.data.min[1].saturating_add(number(block.origin[1]))],
         };

@@ -11,7 +11,7 @@ use upglow::Aside;
 use upglow_color::RgbSpace;
 
 use super::attribute::{Attributes, chromaticities};
-use super::header::{Channel, MAX_SIDE, Sample, Window, is_name, is_reserved, print};
+use super::header::{Arrangement, Channel, MAX_SIDE, Sample, Window, is_name, is_reserved, print};
 
 /// How blocks of rows are compressed; all methods are lossless.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -145,14 +145,8 @@ impl ExrWriter {
         path: impl AsRef<Path>,
         description: ExrDescription,
     ) -> Result<Self, WriteExrError> {
-        let windows = check(&description)?;
-        let order = sorted(&description.channels)?;
-        let sample = description.sample;
-        let channel = |name: &String| Channel { name: name.clone(), sample, is_linear: false };
-        let channels: Vec<Channel> =
-            order.iter().map(|&c| channel(&description.channels[c])).collect();
+        let (order, first_row, header) = begin(&description, Arrangement::Rows)?;
         let method = description.compression.method();
-        let header = print(&channels, method, windows, &description.attributes);
         let table = header.len() as u64;
         let count = description.size[1].div_ceil(method.scan_lines_per_block());
         let mut file = Aside::create(path.as_ref())?;
@@ -161,7 +155,7 @@ impl ExrWriter {
         Ok(Self {
             file,
             order,
-            first_row: windows[0].min[1],
+            first_row,
             table,
             position: table + 8 * count as u64,
             offsets: Vec::with_capacity(count),
@@ -178,9 +172,7 @@ impl ExrWriter {
     /// [`WriteExrError`] if the band does not fit or the disk is full.
     pub fn write_band(&mut self, channels: &[&[f32]]) -> Result<(), WriteExrError> {
         let rows = self.check_band(channels)?;
-        if self.description.sample == Sample::Half {
-            self.check_half(channels)?;
-        }
+        check_half(&self.description, channels)?;
         let row_bytes = self.row_bytes();
         let start = self.pending.len();
         self.pending.resize(start + rows * row_bytes, 0);
@@ -238,14 +230,6 @@ impl ExrWriter {
         Ok(rows)
     }
 
-    fn check_half(&self, channels: &[&[f32]]) -> Result<(), WriteExrError> {
-        let beyond = |v: &f32| v.is_finite() && v.abs() >= HALF_OVERFLOW;
-        let found = channels.par_iter().zip(&self.description.channels).find_map_first(
-            |(plane, channel)| Some((plane.iter().copied().find(|v| beyond(v))?, channel.clone())),
-        );
-        found.map_or(Ok(()), |(value, channel)| Err(WriteExrError::BeyondHalf { channel, value }))
-    }
-
     /// Compresses and writes the complete blocks of the pending rows; at the end also the last one.
     fn write_blocks(&mut self) -> Result<(), WriteExrError> {
         let compression = self.description.compression;
@@ -275,6 +259,37 @@ impl ExrWriter {
 
 /// The smallest number that rounds to infinity in half precision: 65504 and half a step.
 const HALF_OVERFLOW: f32 = 65520.0;
+
+/// Refuses finite numbers that the samples of a file cannot hold.
+pub(super) fn check_half(
+    description: &ExrDescription,
+    channels: &[&[f32]],
+) -> Result<(), WriteExrError> {
+    if description.sample != Sample::Half {
+        return Ok(());
+    }
+    let beyond = |v: &f32| v.is_finite() && v.abs() >= HALF_OVERFLOW;
+    let found =
+        channels.par_iter().zip(&description.channels).find_map_first(|(plane, channel)| {
+            Some((plane.iter().copied().find(|v| beyond(v))?, channel.clone()))
+        });
+    found.map_or(Ok(()), |(value, channel)| Err(WriteExrError::BeyondHalf { channel, value }))
+}
+
+/// The order of the channels in the file, its first row, and its header.
+pub(super) fn begin(
+    description: &ExrDescription,
+    arrangement: Arrangement,
+) -> Result<(Vec<usize>, i32, Vec<u8>), WriteExrError> {
+    let windows = check(description)?;
+    let order = sorted(&description.channels)?;
+    let sample = description.sample;
+    let channel = |name: &String| Channel { name: name.clone(), sample, is_linear: false };
+    let channels: Vec<Channel> = order.iter().map(|&c| channel(&description.channels[c])).collect();
+    let method = description.compression.method();
+    let header = print(&channels, method, windows, arrangement, &description.attributes);
+    Ok((order, windows[0].min[1], header))
+}
 
 /// Data and display window of a valid description.
 fn check(description: &ExrDescription) -> Result<[Window; 2], WriteExrError> {
@@ -312,7 +327,7 @@ fn sorted(names: &[String]) -> Result<Vec<usize>, WriteExrError> {
     Ok(order)
 }
 
-fn encode(sample: Sample, values: &[f32], to: &mut [u8]) {
+pub(super) fn encode(sample: Sample, values: &[f32], to: &mut [u8]) {
     match sample {
         Sample::Half => {
             // Many at once: asking which instructions there are takes longer than one conversion.
@@ -336,7 +351,7 @@ fn encode(sample: Sample, values: &[f32], to: &mut [u8]) {
 const DEFLATE_LEVEL: u8 = 1;
 
 /// A block as the file holds it: compressed if that makes it shorter.
-fn pack(compression: Compression, block: &[u8]) -> Vec<u8> {
+pub(super) fn pack(compression: Compression, block: &[u8]) -> Vec<u8> {
     if compression == Compression::None {
         return block.to_vec();
     }

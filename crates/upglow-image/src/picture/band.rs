@@ -1,5 +1,7 @@
 //! Rows of a picture.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 use upglow_color::rounding::to_single;
 
@@ -26,6 +28,16 @@ impl Band {
     /// Number of rows.
     pub fn rows(&self) -> usize {
         self.rgb.len().checked_div(self.width).unwrap_or(0)
+    }
+
+    /// Some columns of these rows.
+    pub(crate) fn columns(&self, columns: Range<usize>) -> Self {
+        let rgb = self.rgb.chunks(self.width).flat_map(|row| &row[columns.clone()]);
+        let alpha = self.alpha.as_ref().map(|alpha| {
+            alpha.chunks(self.width).flat_map(|row| &row[columns.clone()]).copied().collect()
+        });
+        let (width, rgb) = (columns.len(), rgb.copied().collect());
+        Self { first_row: self.first_row, width, rgb, alpha }
     }
 
     /// Converts the stored colors to linear light. Alpha does not change.

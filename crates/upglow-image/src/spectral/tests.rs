@@ -17,7 +17,7 @@ use super::channel::{
 use super::compact::{CompactForm, CompactLayout};
 use super::lint::findings::{Lint, Rule, Severity};
 use super::picture::SpectralPicture;
-use crate::bake::{BakeOptions, Baker, Form};
+use crate::bake::{BakeOptions, Baker, Form, Layout};
 use crate::exr::attribute::{Attributes, chromaticities};
 use crate::exr::header::Sample;
 use crate::exr::reader::ExrReader;
@@ -272,8 +272,12 @@ fn baked(folder: &Path, name: &str, form: Form, model: &Model) -> (PathBuf, Cube
     write(&input, &names, Attributes::from([space]), &colors.map(|c| c.to_vec()));
     let cube = build_cube(&Contract::default(), model, Preset::Konig2020.options(), 5, &Unwatched)
         .unwrap();
-    let options =
-        BakeOptions { declared: Declared::default(), repair: None, sample: Sample::Float };
+    let options = BakeOptions {
+        declared: Declared::default(),
+        repair: None,
+        sample: Sample::Float,
+        layout: Layout::Rows,
+    };
     let output = folder.join(name);
     Baker::new(&cube, form, options).unwrap().bake(&input, &output, &Unwatched).unwrap();
     (output, cube)
@@ -307,6 +311,58 @@ fn other_programs_read_baked_materials_and_light() {
         assert_eq!(expected.lines().count(), 6 * channels);
         std::fs::write(&list, expected).unwrap();
         agrees(&python, "--samples", &[&path, &list]);
+    }
+}
+
+#[test]
+fn a_texture_system_reads_every_level_of_baked_textures_as_we_do() {
+    let Some(python) = python() else {
+        println!(
+            "skipped: a_texture_system_reads_every_level_of_baked_textures_as_we_do, no python3"
+        );
+        return;
+    };
+    const SIZE: [usize; 2] = [71, 45];
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let plane = |k: usize| -> Vec<f32> {
+        let texel = |i: usize| 0.2 + 0.5 * ([0.1, 0.37, 0.73][k] * i as f32).fract();
+        (0..SIZE[0] * SIZE[1]).map(texel).collect()
+    };
+    let described = ExrDescription::new(SIZE, ["R", "G", "B"]).with_space(&RgbSpace::default());
+    let mut writer = ExrWriter::create(path("in.exr"), described).unwrap();
+    writer.write_band(&[&plane(0), &plane(1), &plane(2)]).unwrap();
+    writer.finish().unwrap();
+    let preset = Preset::Konig2020;
+    let cube = build_cube(&Contract::default(), &preset.model(), preset.options(), 5, &Unwatched);
+    let cube = cube.unwrap();
+    let light = Illuminant::named("A").unwrap();
+    let grid = Grid::try_new(400, 700, 50).unwrap();
+    for form in [Form::Material, Form::Radiance { light }, Form::Spectral { grid, compact: true }] {
+        let options = BakeOptions {
+            declared: Declared::default(),
+            repair: None,
+            sample: Sample::Half,
+            layout: Layout::Mipmap,
+        };
+        let baker = Baker::new(&cube, form, options).unwrap();
+        baker.bake(path("in.exr"), path("out.tx"), &Unwatched).unwrap();
+        let mut lines = String::new();
+        for level in 0..7 {
+            let mut reader = ExrReader::open_level(path("out.tx"), level).unwrap();
+            let [width, height] = reader.size();
+            let channels: Vec<usize> = (0..reader.channels().len()).collect();
+            let planes = reader.read_rows(0..height, &channels).unwrap();
+            for (plane, channel) in planes.iter().zip(reader.channels()) {
+                for (i, value) in plane.iter().enumerate() {
+                    let (x, y, name) = (i % width, i / width, &channel.name);
+                    lines += &format!("{level} {width} {height} {x} {y} {name} {value}\n");
+                }
+            }
+        }
+        assert!(ExrReader::open_level(path("out.tx"), 7).is_err());
+        std::fs::write(path("expected.txt"), lines).unwrap();
+        agrees(&python, "--levels", &[&path("out.tx"), &path("expected.txt")]);
     }
 }
 

@@ -2,10 +2,12 @@
 
 usage: check_exr.py FULL.exr COMPACT.exr EXPECTED.txt
        check_exr.py --samples FILE.exr EXPECTED.txt
+       check_exr.py --levels FILE.tx EXPECTED.txt
        check_exr.py --colors SPECTRAL.exr WEIGHTS.txt COLORS.txt
 
 EXPECTED.txt holds one sample per line: column, row, channel, value. The full file must hold them as
 channels; the compact one is expanded here, by the description in docs/spectral-exr.md alone.
+For --levels each line of EXPECTED.txt begins with the level, its width and its height.
 WEIGHTS.txt holds a wavelength and the power of the light per line, COLORS.txt column, row, X, Y, Z.
 """
 
@@ -89,6 +91,37 @@ def samples(path, expected_path):
         assert found == np.float32(value), (x, y, name, found, value)
     print(f"OpenEXR {OpenEXR.__version__}: {len(rows)} samples")
     with_open_image_io(path, channels)
+
+
+def levels(path, expected_path):
+    """Every texel of every level, as OpenImageIO's texture system reads it for a footprint of its size."""
+    try:
+        import OpenImageIO as oiio
+    except ImportError:
+        print("skipped: OpenImageIO is not installed")
+        return
+    system = oiio.TextureSystem()
+    options = oiio.TextureOpt()
+    options.mipmode = oiio.MipMode.OneLevel
+    options.interpmode = oiio.InterpMode.Closest
+    source = oiio.ImageInput.open(path)
+    names = source.spec().channelnames
+    source.close()
+    texels = {}
+    for level, width, height, x, y, name, value in expected(expected_path):
+        key = tuple(map(int, (level, width, height, x, y)))
+        texels.setdefault(key, {})[name] = np.float32(value)
+    for (level, width, height, x, y), values in texels.items():
+        assert sorted(values) == sorted(names), names
+        # A little less than a texel, so that rounding does not choose the next level; twice as much for
+        # the last one, which has no next.
+        texel = 2.0 if (width, height) == (1, 1) else 0.95
+        footprint = (texel / width, 0, 0, texel / height)
+        at = ((x + 0.5) / width, (y + 0.5) / height)
+        found = system.texture(path, options, *at, *footprint, len(names))
+        for name, sample in zip(names, found):
+            assert np.float32(sample) == values[name], (level, x, y, name, sample, values[name])
+    print(f"OpenImageIO {oiio.VERSION_STRING}: {len(texels)} texels of all levels")
 
 
 # Two sums of the same products in another order.
@@ -177,7 +210,7 @@ def with_colour(path, rows):
 
 
 if __name__ == "__main__":
-    modes = {"--samples": samples, "--colors": colors}
+    modes = {"--samples": samples, "--levels": levels, "--colors": colors}
     if sys.argv[1] in modes:
         modes[sys.argv[1]](*sys.argv[2:])
     else:
