@@ -210,6 +210,22 @@ fn several_lights_give_a_picture_each() {
 }
 
 #[test]
+fn textures_at_all_levels_are_named_tx_and_read_at_the_first() {
+    let folder = desk();
+    let made = folder.picture("bake cube tile.exr -o out --tx");
+    assert_eq!(made["file"], "out/tile.material.tx");
+    folder.done("bake cube tile.exr -o tile.tx --sample float");
+    folder.done("bake cube tile.exr -o rows.exr --sample float");
+    let read = |file: &str| folder.json(&format!("read {file} --at 1,1"));
+    let [mut texture, mut rows] = ["tile.tx", "rows.exr"].map(read);
+    [&mut texture, &mut rows].map(|texel| texel["file"] = Value::Null);
+    assert_eq!(texture, rows);
+    let line = folder.refused(1, "bake cube tile.exr -o tile.exr --tx");
+    assert!(line.contains("a name that ends in .exr, expected one that ends in .tx"), "{line}");
+    folder.refused(2, "bake cube tile.exr -o a.tx --tx --format exr");
+}
+
+#[test]
 fn folders_and_udim_tiles_keep_their_names() {
     let folder = desk();
     for name in ["set/wall.1001.exr", "set/wall.1002.exr", "set/floor_1001.exr", "set/door.exr"] {

@@ -257,7 +257,9 @@ impl<'c> Baker<'c> {
     /// threads.
     ///
     /// Memory: that of [`Picture`] for two bands, a band of at most 20 MiB in single precision and twice in that of the
-    /// file, and one block of 16 rows (one row in spectral files).
+    /// file, and one block of 16 rows (one row in spectral files). With [`Layout::Mipmap`] a band is the
+    /// channels of some tiles, and there are the colors of 64 rows of all levels: 16 bytes for each texel
+    /// of 128 rows of the picture.
     ///
     /// # Errors
     ///
@@ -351,20 +353,29 @@ impl<'c> Baker<'c> {
 
     /// Makes and writes the channels of a band; returns facts about its texels.
     fn write(&self, output: &mut Output, band: &Band) -> Result<Filled, BakeError> {
-        let Output::Mipmap(mipmap) = output else {
-            let (planes, filled) = self.planes(band);
-            output.write_band(&planes)?;
-            return Ok(filled);
-        };
-        let (levels, writer) = &mut **mipmap;
-        let mut all = Filled::default();
-        for rows in levels.push(band) {
-            let filled = self.write_tiles(writer, &rows)?;
-            if rows.level == 0 {
-                all = all.with(&filled);
+        match output {
+            Output::Exr(writer) => {
+                let (planes, filled) = self.planes(band);
+                writer.write_band(&planes.iter().map(Vec::as_slice).collect::<Vec<_>>())?;
+                Ok(filled)
+            }
+            Output::Png(writer) => {
+                let (planes, filled) = self.planes(band);
+                writer.write_band(&planes).map_err(WriteExrError::Io)?;
+                Ok(filled)
+            }
+            Output::Mipmap(mipmap) => {
+                let (levels, writer) = &mut **mipmap;
+                let mut all = Filled::default();
+                for rows in levels.push(band) {
+                    let filled = self.write_tiles(writer, &rows)?;
+                    if rows.level == 0 {
+                        all = all.with(&filled);
+                    }
+                }
+                Ok(all)
             }
         }
-        Ok(all)
     }
 
     /// Makes and writes a row of tiles, as many at a time as a band may have.

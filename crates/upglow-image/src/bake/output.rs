@@ -19,17 +19,6 @@ pub(super) enum Output {
 }
 
 impl Output {
-    /// Writes rows: a plane for each channel.
-    pub(super) fn write_band(&mut self, planes: &[Vec<f32>]) -> Result<(), WriteExrError> {
-        match self {
-            Self::Exr(writer) => {
-                writer.write_band(&planes.iter().map(Vec::as_slice).collect::<Vec<_>>())
-            }
-            Self::Png(writer) => Ok(writer.write_band(planes)?),
-            Self::Mipmap(_) => Ok(()),
-        }
-    }
-
     /// Completes the file; returns its size in bytes.
     pub(super) fn finish(self) -> Result<u64, WriteExrError> {
         match self {

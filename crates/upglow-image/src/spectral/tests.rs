@@ -316,9 +316,9 @@ fn other_programs_read_baked_materials_and_light() {
 
 #[test]
 fn a_texture_system_reads_every_level_of_baked_textures_as_we_do() {
-    let Some(python) = python() else {
+    let Some(python) = python(READERS) else {
         println!(
-            "skipped: a_texture_system_reads_every_level_of_baked_textures_as_we_do, no python3"
+            "skipped: a_texture_system_reads_every_level_of_baked_textures_as_we_do, no python3 with OpenEXR and numpy"
         );
         return;
     };
