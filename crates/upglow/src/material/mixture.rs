@@ -265,8 +265,9 @@ mod tests {
 
         #[test]
         fn the_matrix_times_the_light_is_the_color(u in unit6()) {
-            // The matrix integrates the emission over each band, the sums take it at the center.
-            const QUADRATURE: f64 = 2e-3;
+            // The matrix integrates the emission over each band, the sums take it at the center. Of 3,000
+            // materials of each model none is further off.
+            const QUADRATURE: f64 = 2.2e-3;
             let colorimetry = Contract::default().on(Grid::FIT);
             for model in models() {
                 let mixture = Mixture::of(&model, material(&model, u));
