@@ -256,10 +256,10 @@ impl<'c> Baker<'c> {
     /// pool. The file is replaced only once it is complete, and its bytes do not depend on the number of
     /// threads.
     ///
-    /// Memory: that of [`Picture`] for two bands, a band of at most 20 MiB in single precision and twice in that of the
-    /// file, and one block of 16 rows (one row in spectral files). With [`Layout::Mipmap`] a band is the
-    /// channels of some tiles, and there are the colors of 64 rows of all levels: 16 bytes for each texel
-    /// of 128 rows of the picture.
+    /// Memory: that of [`Picture`] for two bands, a band of at most 20 MiB in single precision and twice in
+    /// that of the file, and one block of 16 rows (one row in spectral files). With [`Layout::Mipmap`] a
+    /// band is the channels of some tiles, and there are the colors of 64 rows of all levels: 16 bytes for
+    /// each texel of 128 rows of the picture.
     ///
     /// # Errors
     ///
