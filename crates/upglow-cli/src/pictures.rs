@@ -130,6 +130,26 @@ fn is_picture(path: &Path) -> bool {
     SUFFIXES.iter().any(|known| known.eq_ignore_ascii_case(suffix))
 }
 
+/// Whether a name ends as those of files do, which a new folder would not.
+fn is_named_as_file(path: &Path) -> bool {
+    const OTHERS: [&str; 12] = [
+        "safetensors",
+        "svg",
+        "html",
+        "htm",
+        "pdf",
+        "csv",
+        "json",
+        "txt",
+        "gif",
+        "webp",
+        "psd",
+        "bmp",
+    ];
+    let suffix = path.extension().and_then(OsStr::to_str).unwrap_or_default();
+    is_picture(path) || OTHERS.iter().any(|known| known.eq_ignore_ascii_case(suffix))
+}
+
 /// Where the files of a command go.
 #[derive(Clone, Debug)]
 pub(crate) struct Outputs<'a> {
@@ -144,18 +164,21 @@ pub(crate) struct Outputs<'a> {
 }
 
 impl Outputs<'_> {
-    /// The files of each input: `path`, if it ends in a suffix of pictures and is not a folder, for a
+    /// The files of each input: `path`, if it ends in a suffix of files and is not a folder, for a
     /// single picture or with a word for the numbers of all; otherwise files in the folder `path`, in the
     /// subfolder of the picture and named after it and the form, with the tile number of a UDIM in its
     /// place.
     pub(crate) fn of(&self, inputs: &[Input]) -> Result<Vec<Vec<PathBuf>>, Failure> {
-        let is_file = is_picture(self.path) && !self.path.is_dir();
+        let is_file = is_named_as_file(self.path) && !self.path.is_dir();
         let pattern = if is_file { NamePattern::of(self.path)? } else { None };
         if is_file {
             files::check_ending(self.path, &[self.ending])?;
         }
         if is_file && pattern.is_none() && inputs.len() != 1 {
-            let message = format!("one file for {} pictures, expected a folder", inputs.len());
+            let message = format!(
+                "one file for {} pictures, expected a folder, or a name with <UDIM> or %04d",
+                inputs.len()
+            );
             return Err(Failure::file(self.path, message));
         }
         let mut outputs = Vec::new();

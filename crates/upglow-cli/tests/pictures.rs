@@ -255,7 +255,10 @@ fn folders_and_udim_tiles_keep_their_names() {
     let line = folder.refused(1, "bake cube set -o set");
     assert!(line.starts_with("set: the folder of the pictures, expected another"), "{line}");
     let line = folder.refused(1, "bake cube set -o all.exr");
-    assert_eq!(line, "all.exr: one file for 4 pictures, expected a folder");
+    assert_eq!(
+        line,
+        "all.exr: one file for 4 pictures, expected a folder, or a name with <UDIM> or %04d"
+    );
     let line = folder.refused(2, "check set --heat-map heat.png");
     assert!(line.starts_with("--heat-map: given with 4 pictures, expected one"), "{line}");
 }
@@ -315,6 +318,10 @@ fn pictures_that_are_refused() {
         (
             "bake cube tile.exr -o tile.png",
             "tile.png: a name that ends in .png, expected one that ends in .exr",
+        ),
+        (
+            "bake cube tile.exr -o tile.svg",
+            "tile.svg: a name that ends in .svg, expected one that ends in .exr",
         ),
         ("read tile.exr --at 0,0", "tile.exr: no spectral channel, expected names as T.550"),
     ];
