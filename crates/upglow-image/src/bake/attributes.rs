@@ -127,3 +127,30 @@ pub(super) fn read_model(attributes: &Attributes) -> Result<Cube, FormError> {
 
 /// Where the attributes of materials come from.
 const EXPECTED: &str = "a file of `upglow bake --as material`";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use upglow::{FitRecord, Node};
+    use upglow_color::Contract;
+    use upglow_fit::Preset;
+
+    #[test]
+    fn the_model_comes_back_from_its_curves_and_from_files_that_hold_a_cube() {
+        for preset in [Preset::Natural, Preset::Konig2020, Preset::Jung2019, Preset::Jakob2019] {
+            let (model, nodes) = (preset.model(), vec![Node::default(); 8]);
+            let cube = Cube::new(Contract::default(), model, FitRecord::default(), 2, nodes);
+            let cube = cube.unwrap();
+            let mut of_curves = curves(&cube);
+            of_curves.insert(HEADER.into(), cube.header_json().into());
+            let whole = Attribute::new(MODEL_KIND, cube.to_bytes());
+            for attributes in [of_curves, Attributes::from([(MODEL.into(), whole)])] {
+                let found = read_model(&attributes).unwrap();
+                assert_eq!((found.contract(), found.model()), (cube.contract(), cube.model()));
+            }
+        }
+        let damaged = Attribute::new(MODEL_KIND, b"no cube".to_vec());
+        let refused = read_model(&Attributes::from([(MODEL.into(), damaged)])).unwrap_err();
+        assert!(refused.to_string().contains(MODEL), "{refused}");
+    }
+}
