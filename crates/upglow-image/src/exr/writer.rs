@@ -118,21 +118,98 @@ impl WriteExrError {
 /// Memory: the band in the precision of the file, twice if it is compressed, and one block of rows.
 #[derive(Debug)]
 pub struct ExrWriter {
-    file: Aside,
-    description: ExrDescription,
-    /// Indices of the caller's channels in the order of the file.
-    order: Vec<usize>,
+    file: BlockFile,
     /// First row of the data window.
     first_row: i32,
-    /// Position of the table of blocks, bytes.
-    table: u64,
-    /// Position of the next block, bytes.
-    position: u64,
-    offsets: Vec<u64>,
+    /// Blocks that are written.
+    blocks: usize,
     /// Rows of an incomplete block, in the layout of the file.
     pending: Vec<u8>,
     /// Rows received so far.
     rows: usize,
+}
+
+/// An OpenEXR file of blocks, rows or tiles, whose table is completed last. It appears under its name when
+/// [`BlockFile::finish`] returns.
+#[derive(Debug)]
+pub(super) struct BlockFile {
+    file: Aside,
+    pub(super) description: ExrDescription,
+    /// Indices of the caller's channels in the order of the file.
+    order: Vec<usize>,
+    /// Position of the table of blocks, bytes.
+    table: u64,
+    /// Position of the next block, bytes.
+    position: u64,
+    /// Positions of the blocks in the order of the table; 0 for those not written.
+    offsets: Vec<u64>,
+}
+
+impl BlockFile {
+    /// Starts a file that will be named `path`, with room for a table of as many blocks as a valid
+    /// description has; returns also the first row of its data window.
+    pub(super) fn create(
+        path: &Path,
+        description: ExrDescription,
+        arrangement: Arrangement,
+        blocks: impl FnOnce(&ExrDescription) -> usize,
+    ) -> Result<(Self, i32), WriteExrError> {
+        let (order, first_row, header) = begin(&description, arrangement)?;
+        let blocks = blocks(&description);
+        let table = header.len() as u64;
+        let mut file = Aside::create(path)?;
+        file.write_all(&header)?;
+        file.write_all(&vec![0; 8 * blocks])?;
+        let position = table + 8 * blocks as u64;
+        let offsets = vec![0; blocks];
+        Ok((Self { file, description, order, table, position, offsets }, first_row))
+    }
+
+    /// Bytes of a row of this width.
+    pub(super) fn row_bytes(&self, width: usize) -> usize {
+        width * self.order.len() * self.description.sample.bytes()
+    }
+
+    /// Fills the bytes of row `row` of planes of this width.
+    pub(super) fn encode_row(
+        &self,
+        channels: &[&[f32]],
+        width: usize,
+        row: usize,
+        bytes: &mut [u8],
+    ) {
+        let sample = self.description.sample;
+        for (part, &channel) in bytes.chunks_exact_mut(width * sample.bytes()).zip(&self.order) {
+            encode(sample, &channels[channel][row * width..(row + 1) * width], part);
+        }
+    }
+
+    /// Writes a block, by its number in the table, with the numbers that it begins with.
+    pub(super) fn write(
+        &mut self,
+        index: usize,
+        head: &[i32],
+        packed: &[u8],
+    ) -> Result<(), WriteExrError> {
+        let size = u32::try_from(packed.len()).map_err(io::Error::other)?;
+        for number in head {
+            self.file.write_all(&number.to_le_bytes())?;
+        }
+        self.file.write_all(&size.to_le_bytes())?;
+        self.file.write_all(packed)?;
+        self.offsets[index] = self.position;
+        self.position += (4 * head.len() + 4 + packed.len()) as u64;
+        Ok(())
+    }
+
+    /// Writes the table and gives the file its name. Returns its size in bytes.
+    pub(super) fn finish(mut self) -> Result<u64, WriteExrError> {
+        debug_assert!(self.offsets.iter().all(|&at| at > 0), "a block is missing");
+        self.file.seek(SeekFrom::Start(self.table))?;
+        let table: Vec<u8> = self.offsets.iter().flat_map(|at| at.to_le_bytes()).collect();
+        self.file.write_all(&table)?;
+        Ok(self.file.commit()?)
+    }
 }
 
 impl ExrWriter {
@@ -145,24 +222,12 @@ impl ExrWriter {
         path: impl AsRef<Path>,
         description: ExrDescription,
     ) -> Result<Self, WriteExrError> {
-        let (order, first_row, header) = begin(&description, Arrangement::Rows)?;
-        let method = description.compression.method();
-        let table = header.len() as u64;
-        let count = description.size[1].div_ceil(method.scan_lines_per_block());
-        let mut file = Aside::create(path.as_ref())?;
-        file.write_all(&header)?;
-        file.write_all(&vec![0; 8 * count])?;
-        Ok(Self {
-            file,
-            order,
-            first_row,
-            table,
-            position: table + 8 * count as u64,
-            offsets: Vec::with_capacity(count),
-            pending: Vec::new(),
-            rows: 0,
-            description,
-        })
+        let blocks = |described: &ExrDescription| {
+            described.size[1].div_ceil(described.compression.method().scan_lines_per_block())
+        };
+        let (file, first_row) =
+            BlockFile::create(path.as_ref(), description, Arrangement::Rows, blocks)?;
+        Ok(Self { file, first_row, blocks: 0, pending: Vec::new(), rows: 0 })
     }
 
     /// Writes the next rows: for each channel, in the caller's order, its samples row by row.
@@ -172,20 +237,13 @@ impl ExrWriter {
     /// [`WriteExrError`] if the band does not fit or the disk is full.
     pub fn write_band(&mut self, channels: &[&[f32]]) -> Result<(), WriteExrError> {
         let rows = self.check_band(channels)?;
-        check_half(&self.description, channels)?;
-        let row_bytes = self.row_bytes();
+        check_half(&self.file.description, channels)?;
+        let width = self.file.description.size[0];
+        let row_bytes = self.file.row_bytes(width);
         let start = self.pending.len();
         self.pending.resize(start + rows * row_bytes, 0);
-        let (order, sample) = (&self.order, self.description.sample);
-        let width = self.description.size[0];
-        self.pending[start..].par_chunks_mut(row_bytes.max(1)).enumerate().for_each(
-            |(row, bytes)| {
-                let parts = bytes.chunks_exact_mut(width * sample.bytes());
-                for (part, &channel) in parts.zip(order) {
-                    encode(sample, &channels[channel][row * width..(row + 1) * width], part);
-                }
-            },
-        );
+        let (file, parts) = (&self.file, self.pending[start..].par_chunks_mut(row_bytes.max(1)));
+        parts.enumerate().for_each(|(row, bytes)| file.encode_row(channels, width, row, bytes));
         self.rows += rows;
         self.write_blocks()
     }
@@ -195,30 +253,23 @@ impl ExrWriter {
     /// # Errors
     ///
     /// [`WriteExrError`] if rows are missing or the disk is full; no file is left then.
-    pub fn finish(mut self) -> Result<u64, WriteExrError> {
-        let expected = self.description.size[1];
+    pub fn finish(self) -> Result<u64, WriteExrError> {
+        let expected = self.file.description.size[1];
         if self.rows != expected {
             return Err(WriteExrError::invalid(format!("{} rows", self.rows), expected));
         }
-        self.file.seek(SeekFrom::Start(self.table))?;
-        let table: Vec<u8> = self.offsets.iter().flat_map(|at| at.to_le_bytes()).collect();
-        self.file.write_all(&table)?;
-        Ok(self.file.commit()?)
-    }
-
-    fn row_bytes(&self) -> usize {
-        self.description.size[0] * self.order.len() * self.description.sample.bytes()
+        self.file.finish()
     }
 
     /// The number of rows of a valid band.
     fn check_band(&self, channels: &[&[f32]]) -> Result<usize, WriteExrError> {
-        let [width, height] = self.description.size;
-        let (found, expected) = (channels.len(), self.order.len());
+        let [width, height] = self.file.description.size;
+        let (found, expected) = (channels.len(), self.file.order.len());
         if found != expected {
             return Err(WriteExrError::invalid(format!("{found} channels in a band"), expected));
         }
         let rows = channels.first().map_or(0, |c| c.len() / width);
-        let names = self.description.channels.iter();
+        let names = self.file.description.channels.iter();
         if let Some((name, plane)) = names.zip(channels).find(|(_, c)| c.len() != rows * width) {
             let found = format!("{} samples in channel {name}", plane.len());
             let expected = format!("{}: whole rows, the same in each channel", rows * width);
@@ -232,10 +283,10 @@ impl ExrWriter {
 
     /// Compresses and writes the complete blocks of the pending rows; at the end also the last one.
     fn write_blocks(&mut self) -> Result<(), WriteExrError> {
-        let compression = self.description.compression;
+        let compression = self.file.description.compression;
         let block_rows = compression.method().scan_lines_per_block();
-        let block_bytes = (block_rows * self.row_bytes()).max(1);
-        let ready = if self.rows == self.description.size[1] {
+        let block_bytes = (block_rows * self.file.row_bytes(self.file.description.size[0])).max(1);
+        let ready = if self.rows == self.file.description.size[1] {
             self.pending.len()
         } else {
             self.pending.len() / block_bytes * block_bytes
@@ -243,14 +294,9 @@ impl ExrWriter {
         let blocks = self.pending[..ready].par_chunks(block_bytes);
         let packed: Vec<Vec<u8>> = blocks.map(|block| pack(compression, block)).collect();
         for bytes in packed {
-            let row = self.offsets.len() * block_rows;
-            let row = self.first_row.saturating_add(i32::try_from(row).unwrap_or(i32::MAX));
-            let size = u32::try_from(bytes.len()).map_err(io::Error::other)?;
-            self.file.write_all(&row.to_le_bytes())?;
-            self.file.write_all(&size.to_le_bytes())?;
-            self.file.write_all(&bytes)?;
-            self.offsets.push(self.position);
-            self.position += 8 + bytes.len() as u64;
+            let row = i32::try_from(self.blocks * block_rows).unwrap_or(i32::MAX);
+            self.file.write(self.blocks, &[self.first_row.saturating_add(row)], &bytes)?;
+            self.blocks += 1;
         }
         self.pending.drain(..ready);
         Ok(())
@@ -277,7 +323,7 @@ pub(super) fn check_half(
 }
 
 /// The order of the channels in the file, its first row, and its header.
-pub(super) fn begin(
+fn begin(
     description: &ExrDescription,
     arrangement: Arrangement,
 ) -> Result<(Vec<usize>, i32, Vec<u8>), WriteExrError> {
@@ -327,7 +373,7 @@ fn sorted(names: &[String]) -> Result<Vec<usize>, WriteExrError> {
     Ok(order)
 }
 
-pub(super) fn encode(sample: Sample, values: &[f32], to: &mut [u8]) {
+fn encode(sample: Sample, values: &[f32], to: &mut [u8]) {
     match sample {
         Sample::Half => {
             // Many at once: asking which instructions there are takes longer than one conversion.
