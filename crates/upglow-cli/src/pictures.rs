@@ -132,22 +132,10 @@ fn is_picture(path: &Path) -> bool {
 
 /// Whether a name ends as those of files do, which a new folder would not.
 fn is_named_as_file(path: &Path) -> bool {
-    const OTHERS: [&str; 12] = [
-        "safetensors",
-        "svg",
-        "html",
-        "htm",
-        "pdf",
-        "csv",
-        "json",
-        "txt",
-        "gif",
-        "webp",
-        "psd",
-        "bmp",
-    ];
+    const OTHERS: &[&str] = &["pdf", "csv", "json", "txt", "gif", "webp", "psd", "bmp"];
+    let known = [&SUFFIXES[..], files::CUBE, files::PAGE, files::SVG, OTHERS].concat();
     let suffix = path.extension().and_then(OsStr::to_str).unwrap_or_default();
-    is_picture(path) || OTHERS.iter().any(|known| known.eq_ignore_ascii_case(suffix))
+    known.iter().any(|known| known.eq_ignore_ascii_case(suffix))
 }
 
 /// Where the files of a command go.

@@ -68,7 +68,7 @@ struct BlendPart {
     /// The kind of the node if it matches its color.
     kind: MaterialKind,
     is_missed: bool,
-    /// The color; zero if no blend with a node that misses needs it.
+    /// The color; zero, and never read, if no cell around the node has one that misses.
     color: Xyz,
 }
 

@@ -469,8 +469,8 @@ fn half_precision_moves_no_material_visibly_and_makes_none_steeper() {
     println!("greatest ΔE00 by half precision: {greatest:.4}");
 }
 
-/// Greatest difference between the material of a texel of a level, in half precision, and the mean of the
-/// colors that it stands for. Half precision adds up to 0.04 for such colors, a polished material 0.01.
+/// Greatest ΔE00 between the color of a material at any level, stored in half precision, and the mean of
+/// the picture's colors that it covers. Half precision adds up to 0.04 for such colors, a polished material 0.01.
 const LEVEL_DE2000: f64 = 0.05;
 
 #[test]

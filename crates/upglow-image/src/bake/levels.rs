@@ -130,8 +130,8 @@ fn empty(first_row: usize, width: usize, has_alpha: bool) -> Band {
     Band { first_row, width, rgb: Vec::new(), alpha: has_alpha.then(Vec::new) }
 }
 
-/// The texels of a side of `to` that cover texel `i` of a side of `from`, which is as long, in order;
-/// and the lengths that they cover, where a texel of `to` has the length `from`.
+/// A side of `from` texels is divided into `to` texels instead: the new texels that overlap the old texel
+/// `i`, in order, and the length of each overlap, in units in which a new texel is `from` long.
 fn covering(i: usize, from: usize, to: usize) -> impl Iterator<Item = (usize, f64)> {
     let [start, end] = [i * to, (i + 1) * to];
     (start / from..end.div_ceil(from)).map(move |k| {

@@ -153,7 +153,7 @@ impl BlendFindings {
         self.drawn.iter_mut().zip(other.drawn).for_each(|(all, part)| all.join(part));
     }
 
-    /// Adds a texel, whose values are finite; returns what maps show of it.
+    /// Adds a texel of finite values, and returns what the maps show of it.
     pub(super) fn add(
         &mut self,
         limits: &Limits<'_>,

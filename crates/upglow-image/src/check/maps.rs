@@ -131,7 +131,7 @@ struct TexelCheck<'a, 'c> {
 }
 
 impl TexelCheck<'_, '_> {
-    /// Adds a texel, and the color of the cube's blend if there is a cube.
+    /// Adds a texel. `blend` is the color that the cube makes of it, if there is a cube.
     fn add(&mut self, at: [usize; 2], rgb: [f32; 3], blend: Option<[f32; 3]>, block: &mut Block) {
         if rgb.iter().any(|v| !(0.0..=1.0).contains(v)) {
             self.findings.add_flaws(at, rgb);

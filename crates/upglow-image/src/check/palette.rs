@@ -26,7 +26,7 @@ pub(super) struct CubeHeat {
     pub(super) de2000: f32,
     /// Greatest dose of these blends.
     pub(super) dose: f32,
-    /// Whether the cube has no material for a texel, whose values are not all in 0..=1.
+    /// Whether a texel is outside the cube, as not all of its values are in 0..=1.
     pub(super) is_outside: bool,
 }
 

@@ -22,7 +22,7 @@ pub(super) struct Exif {
     pub(super) color: StatedColor,
 }
 
-/// The `ColorSpace` of colors of which nothing is known.
+/// The value of `ColorSpace` with which a file states nothing: uncalibrated.
 const UNCALIBRATED: u64 = 0xffff;
 
 impl Exif {

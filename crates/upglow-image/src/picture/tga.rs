@@ -75,7 +75,8 @@ pub(super) fn is_tga(path: &Path) -> Result<bool, PictureError> {
     Ok(suffix.eq_ignore_ascii_case("tga") || extension_area(&mut File::open(path)?)?.is_some())
 }
 
-/// The position of the extension area, 0 if there is none; `None` without the footer of version 2.
+/// The position of the extension area, which is 0 in files of version 2 without one; `None` for files
+/// without the footer of version 2.
 fn extension_area(file: &mut (impl Read + Seek)) -> Result<Option<u64>, PictureError> {
     let length = file.seek(SeekFrom::End(0))?;
     if length < FOOTER_BYTES {

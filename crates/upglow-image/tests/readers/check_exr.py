@@ -113,8 +113,8 @@ def levels(path, expected_path):
         texels.setdefault(key, {})[name] = np.float32(value)
     for (level, width, height, x, y), values in texels.items():
         assert sorted(values) == sorted(names), names
-        # A little less than a texel, so that rounding does not choose the next level; twice as much for
-        # the last one, which has no next.
+        # A little less than one texel wide, so that rounding does not select the next smaller level. The
+        # last level has none: two texels select it.
         texel = 2.0 if (width, height) == (1, 1) else 0.95
         footprint = (texel / width, 0, 0, texel / height)
         at = ((x + 0.5) / width, (y + 0.5) / height)
