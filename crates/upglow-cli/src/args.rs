@@ -181,6 +181,7 @@ choices!(
     Shader(Language::Glsl) = "glsl",
     Shader(Language::Hlsl) = "hlsl",
     Shader(Language::Osl) = "osl",
+    Shader(Language::JavaScript) = "js",
 );
 
 #[cfg(test)]

@@ -365,6 +365,7 @@ fn shaders_come_with_their_textures() {
         ("glsl", vec!["sky.textures"]),
         ("hlsl", vec!["sky.textures"]),
         ("osl", vec!["sky.nodes.tif", "sky.curves.tif"]),
+        ("js", vec!["sky.textures"]),
     ] {
         let report = folder.json(&format!("export cube sky.{language}"));
         assert_eq!(report["textures"], serde_json::json!(textures), "{language}");

@@ -13,11 +13,13 @@ pub enum Language {
     Hlsl,
     /// Open Shading Language, which has no buffers: it reads TIFF files.
     Osl,
+    /// `JavaScript`, for pages of a browser: the arithmetic is in double precision.
+    JavaScript,
 }
 
 impl Language {
     /// Every language.
-    pub const ALL: [Self; 4] = [Self::Wgsl, Self::Glsl, Self::Hlsl, Self::Osl];
+    pub const ALL: [Self; 5] = [Self::Wgsl, Self::Glsl, Self::Hlsl, Self::Osl, Self::JavaScript];
 
     /// The name that options use, which is also the suffix of files.
     pub fn name(self) -> &'static str {
@@ -26,6 +28,7 @@ impl Language {
             Self::Glsl => "glsl",
             Self::Hlsl => "hlsl",
             Self::Osl => "osl",
+            Self::JavaScript => "js",
         }
     }
 }

@@ -22,6 +22,7 @@
 //! Out of scope: reading or writing files, talking to a driver, how surfaces scatter over angles.
 
 mod error;
+mod javascript;
 mod language;
 mod payload;
 mod shader;

@@ -4,10 +4,10 @@ use crate::textures::Texture;
 
 /// The file's first bytes.
 pub(crate) const MAGIC: [u8; 8] = *b"UPGLOWTX";
-const VERSION: u32 = 1;
+pub(crate) const VERSION: u32 = 1;
 /// Bytes before the texels.
 pub(crate) const HEADER_BYTES: usize = 64;
-const TEXEL_BYTES: usize = 16;
+pub(crate) const TEXEL_BYTES: usize = 16;
 
 /// A header, then the texels of the nodes and of the curves, if there are any; little-endian.
 pub(crate) fn payload(resolution: usize, nodes: &Texture, curves: Option<&Texture>) -> Vec<u8> {

@@ -8,8 +8,9 @@ use upglow_color::Grid;
 use upglow_color::rounding::to_single;
 
 use crate::error::ShaderError;
+use crate::javascript::module;
 use crate::language::Language;
-use crate::payload::{checksum, payload};
+use crate::payload::{HEADER_BYTES, TEXEL_BYTES, checksum, payload};
 use crate::template::functions;
 use crate::textures::{BINS, Texture, curves, film_curves, nodes};
 use crate::tiff::tiff;
@@ -76,10 +77,15 @@ impl Shader {
             Model::Reflectance | Model::Analytic(_) => None,
         };
         let payload = payload_files(cube, language, name, &nodes, curves.as_ref());
-        let mut source = heading(cube, language, &payload, checksum(&nodes, curves.as_ref()));
-        source += &translate(&constants(cube), language);
-        source += &fetches(language, name, &nodes, curves.as_ref());
-        source += &translate(&functions(cube.model(), language), language);
+        let checksum = checksum(&nodes, curves.as_ref());
+        let mut source = heading(cube, language, &payload, checksum);
+        let constants = translate(&constants(cube), language);
+        let functions = fetches(language, name, &nodes, curves.as_ref())
+            + &translate(&functions(cube.model(), language), language);
+        source += &match language {
+            Language::JavaScript => module(&constants, &functions, &payload[0], checksum),
+            _ => constants + "\n" + &functions,
+        };
         Ok(Self { source, payload })
     }
 }
@@ -147,6 +153,11 @@ fn binding(language: Language, has_curves: bool) -> String {
         Language::Osl => "The files are found along the renderer's path for textures, or as\n\
                           UPGLOW_NODES and UPGLOW_CURVES say if defined before."
             .into(),
+        Language::JavaScript => {
+            "A module: upglow(textures) takes that file as an ArrayBuffer and\n\
+                                 returns the functions by their names."
+                .into()
+        }
     }
 }
 
@@ -197,7 +208,6 @@ fn constants(cube: &Cube) -> String {
             }
         }
     }
-    text.push('\n');
     text
 }
 
@@ -220,8 +230,9 @@ fn fetches(language: Language, name: &str, nodes: &Texture, curves: Option<&Text
     let mut text = match language {
         Language::Glsl => GLSL_SAMPLER.to_owned(),
         Language::Osl => OSL_TEXEL.to_owned(),
-        Language::Wgsl | Language::Hlsl => String::new(),
+        Language::Wgsl | Language::Hlsl | Language::JavaScript => String::new(),
     };
+    let mut texels_before = 0;
     let textures = [("node", "nodes", Some(nodes)), ("curve", "curves", curves)];
     for (binding, (texel, texture, found)) in textures.into_iter().enumerate() {
         let Some(found) = found else { continue };
@@ -231,7 +242,9 @@ fn fetches(language: Language, name: &str, nodes: &Texture, curves: Option<&Text
             Language::Glsl => glsl_fetch(binding, texel, texture, &macros),
             Language::Hlsl => hlsl_fetch(binding, texel, texture, &macros),
             Language::Osl => osl_fetch(name, texel, texture, &macros, found),
+            Language::JavaScript => js_fetch(texel, texture, found, texels_before),
         };
+        texels_before += found.texels.len();
     }
     text
 }
@@ -315,6 +328,27 @@ fn osl_fetch(name: &str, texel: &str, texture: &str, macros: &str, found: &Textu
 
 UpglowTexel upglow_{texel}(int column, int row) {{
     return upglow_texel(UPGLOW_{macros}, (column + 0.5) / {width}.0, (row + 0.5) / {height}.0);
+}}
+
+"
+    )
+}
+
+/// `texels_before` are those before the texture in the file.
+fn js_fetch(texel: &str, texture: &str, found: &Texture, texels_before: usize) -> String {
+    let first_byte = HEADER_BYTES + TEXEL_BYTES * texels_before;
+    let (width, floats) = (found.width, 4 * found.texels.len());
+    format!(
+        "const upglow_{texture} = new Float32Array(textures, {first_byte}, {floats});
+
+function upglow_{texel}(column, row) {{
+    const at = 4 * (row * {width} + column);
+    return {{
+        x: upglow_{texture}[at],
+        y: upglow_{texture}[at + 1],
+        z: upglow_{texture}[at + 2],
+        w: upglow_{texture}[at + 3],
+    }};
 }}
 
 "

@@ -86,6 +86,7 @@ mod tests {
             "energy",
             "photon",
             "osl",
+            "js",
         ];
         for template in TEMPLATES {
             let mut open = false;

@@ -1,8 +1,9 @@
 //! From the templates' dialect to the other languages.
 //!
-//! Templates are WGSL that states every type and uses only what all four languages have: structs of
+//! Templates are WGSL that states every type and uses only what all languages have: structs of
 //! numbers and structs, functions, `if`, `for`, and the functions of numbers that share a name. What
-//! is left to change is the order of names and types, and a few words.
+//! is left to change is the order of names and types, and a few words. In `JavaScript`, where a number
+//! has no type, a struct is a function that makes one, and quotients of integers stand in `i32()`.
 
 use crate::language::Language;
 
@@ -20,8 +21,16 @@ pub(crate) fn translate(wgsl: &str, language: Language) -> String {
         let closes = in_struct && code == "}";
         in_struct = code.starts_with("struct ") || in_struct && !closes;
         text += indent;
-        text += &words(&rearranged(code, in_struct, language), language);
-        text += if closes { ";" } else { "" };
+        let code = match language {
+            Language::JavaScript => untyped(code, in_struct),
+            _ => rearranged(code, in_struct, language),
+        };
+        text += &words(&code, language);
+        text += match language {
+            _ if !closes => "",
+            Language::JavaScript => ");",
+            _ => ";",
+        };
         text += comment;
         text.push('\n');
     }
@@ -30,15 +39,12 @@ pub(crate) fn translate(wgsl: &str, language: Language) -> String {
 
 /// A line with types before names.
 fn rearranged(code: &str, in_struct: bool, language: Language) -> String {
-    let declaration = |keyword: &str| {
-        let (name, rest) = code.strip_prefix(keyword)?.split_once(": ")?;
-        let end = rest.find([' ', ';'])?;
-        Some((name, &rest[..end], &rest[end..]))
-    };
-    if let Some((name, kind, value)) = declaration("const ") {
+    if let Some((name, kind, value)) = declaration(code, "const ") {
         return constant(name, kind, value, language);
     }
-    if let Some((name, kind, rest)) = declaration("let ").or_else(|| declaration("var ")) {
+    if let Some((name, kind, rest)) =
+        declaration(code, "let ").or_else(|| declaration(code, "var "))
+    {
         return format!("{kind} {name}{rest}");
     }
     if let Some(signature) = code.strip_prefix("fn ") {
@@ -58,6 +64,50 @@ fn rearranged(code: &str, in_struct: bool, language: Language) -> String {
     }
 }
 
+/// Name, type and the rest of a line that declares one with this keyword.
+fn declaration<'a>(code: &'a str, keyword: &str) -> Option<(&'a str, &'a str, &'a str)> {
+    let (name, rest) = code.strip_prefix(keyword)?.split_once(": ")?;
+    let end = rest.find([' ', ';'])?;
+    Some((name, &rest[..end], &rest[end..]))
+}
+
+/// A line of `JavaScript`, without types.
+fn untyped(code: &str, in_struct: bool) -> String {
+    if let Some((name, _, value)) =
+        declaration(code, "const ").or_else(|| declaration(code, "let "))
+    {
+        return format!("const {name}{value}");
+    }
+    if let Some((name, kind, rest)) = declaration(code, "var ") {
+        return match rest {
+            ";" => format!("const {name} = {kind}();"),
+            _ => format!("let {name}{rest}"),
+        };
+    }
+    if let Some((name, parameters, _, rest)) = code.strip_prefix("fn ").and_then(signature) {
+        let names: Vec<&str> = parameters.iter().map(|(name, _)| *name).collect();
+        return format!("function {name}({}) {rest}", names.join(", "));
+    }
+    if let Some((name, rest)) = code.strip_prefix("for (var ").and_then(|c| c.split_once(": ")) {
+        return format!("for (let {name} {}", rest.split_once(' ').map_or(rest, |(_, rest)| rest));
+    }
+    if let Some(name) = code.strip_prefix("struct ").and_then(|c| c.strip_suffix(" {")) {
+        return format!("const {name} = () => ({{");
+    }
+    match code.split_once(": ") {
+        Some((name, rest)) if in_struct => {
+            let (kind, rest) = rest.split_once(',').unwrap_or((rest, ""));
+            let initial = match kind {
+                "f32" | "i32" => "0",
+                "bool" => "false",
+                _ => "null",
+            };
+            format!("{name}: {initial},{rest}")
+        }
+        _ => code.into(),
+    }
+}
+
 fn constant(name: &str, kind: &str, value: &str, language: Language) -> String {
     match language {
         // No variables outside functions.
@@ -66,20 +116,25 @@ fn constant(name: &str, kind: &str, value: &str, language: Language) -> String {
             format!("#define {name} {value}")
         }
         Language::Hlsl => format!("static const {kind} {name}{value}"),
-        Language::Wgsl | Language::Glsl => format!("const {kind} {name}{value}"),
+        _ => format!("const {kind} {name}{value}"),
     }
 }
 
 /// `name(a: A, b: B) -> C {` as `C name(A a, B b) {`.
-fn function(signature: &str) -> Option<String> {
-    let (name, rest) = signature.split_once('(')?;
+fn function(code: &str) -> Option<String> {
+    let (name, parameters, kind, rest) = signature(code)?;
+    let parameters: Vec<String> =
+        parameters.iter().map(|(name, kind)| format!("{kind} {name}")).collect();
+    Some(format!("{kind} {name}({}) {rest}", parameters.join(", ")))
+}
+
+/// The name, parameters with their types, type and rest of `name(a: A, b: B) -> C {`.
+fn signature(code: &str) -> Option<(&str, Vec<(&str, &str)>, &str, &str)> {
+    let (name, rest) = code.split_once('(')?;
     let (parameters, rest) = rest.split_once(") -> ")?;
     let (kind, rest) = rest.split_once(' ')?;
-    let parameters: Option<Vec<String>> = parameters
-        .split(", ")
-        .map(|parameter| parameter.split_once(": ").map(|(name, kind)| format!("{kind} {name}")))
-        .collect();
-    Some(format!("{kind} {name}({}) {rest}", parameters?.join(", ")))
+    let parameters: Option<_> = parameters.split(", ").map(|p| p.split_once(": ")).collect();
+    Some((name, parameters?, kind, rest))
 }
 
 /// The line with each word in the language's own.
@@ -98,8 +153,16 @@ fn words(code: &str, language: Language) -> String {
 }
 
 fn word(word: &str, language: Language) -> &str {
-    use Language::{Glsl, Hlsl, Osl};
+    use Language::{Glsl, Hlsl, JavaScript, Osl};
     match (word, language) {
+        ("f32", JavaScript) => "",
+        ("i32", JavaScript) => "Math.trunc",
+        ("abs", JavaScript) => "Math.abs",
+        ("exp", JavaScript) => "Math.exp",
+        ("max", JavaScript) => "Math.max",
+        ("min", JavaScript) => "Math.min",
+        ("mix", JavaScript) => "upglow_mix",
+        ("sqrt", JavaScript) => "Math.sqrt",
         ("f32", _) => "float",
         ("i32", _) => "int",
         ("vec3f", Glsl) => "vec3",
@@ -170,6 +233,30 @@ bool f(Pair p, int n) {
         assert!(osl.contains("int f(Pair p, int n) {\n"));
         assert!(osl.contains("return 1;\n"));
         assert!(osl.contains("1.0, 0.5)"));
+    }
+
+    #[test]
+    fn javascript_has_no_types_and_makes_structs() {
+        assert_eq!(
+            translate(WGSL, Language::JavaScript),
+            "\
+const COUNT = 3;
+// A pair: of numbers.
+const Pair = () => ({
+    a: 0, // the first: nm
+    b: null,
+});
+
+function f(p, n) {
+    const x = upglow_mix(p.a, 1.0, 0.5); // let y: f32
+    const q = Pair();
+    for (let k = 0; k < COUNT; k += 1) {
+        q.a = (k) * x;
+    }
+    return true;
+}
+"
+        );
     }
 
     #[test]

@@ -229,6 +229,10 @@ fn python(packages: &str) -> Option<PathBuf> {
     candidates.into_iter().flatten().find(can_import)
 }
 
+fn node() -> Option<PathBuf> {
+    runs("node").then(|| "node".into())
+}
+
 fn runs(program: &str) -> bool {
     Command::new(program).arg("--version").output().is_ok()
 }
@@ -258,6 +262,7 @@ fn fragment_compiler(language: Language) -> Option<(Command, &'static str)> {
         Language::Glsl => (glslang(&["-S", "frag"])?, "#version 420\n"),
         Language::Hlsl => (glslang(&["-V", "-D", "-e", "main", "-S", "frag", "-o", "x.spv"])?, ""),
         Language::Osl => (python("bpy", COMPILE_OSL)?, ""),
+        Language::JavaScript => return None,
     })
 }
 
@@ -316,7 +321,7 @@ fn glslang(language: Language) -> Option<(&'static [&'static str], &'static str)
              #define UPGLOW_SAMPLER texture2D\n",
         )),
         Language::Hlsl => Some((&["-V", "-D", "-e", "main", "-S", "comp"], "")),
-        Language::Wgsl | Language::Osl => None,
+        Language::Wgsl | Language::Osl | Language::JavaScript => None,
     }
 }
 
@@ -358,10 +363,31 @@ fn osl_paths(folder: &Path) -> String {
 }
 
 fn read_answers(folder: &Path) -> Vec<Answer> {
-    let bytes = fs::read(folder.join("answers.f32")).unwrap();
-    let number = |bytes: &[u8]| f64::from(f32::from_le_bytes(bytes.try_into().unwrap()));
-    let numbers: Vec<f64> = bytes.chunks_exact(4).map(number).collect();
+    let single = |bytes: &[u8]| f64::from(f32::from_le_bytes(bytes.try_into().unwrap()));
+    let double = |bytes: &[u8]| f64::from_le_bytes(bytes.try_into().unwrap());
+    let numbers: Vec<f64> = match fs::read(folder.join("answers.f64")) {
+        Ok(bytes) => bytes.chunks_exact(8).map(double).collect(),
+        Err(_) => {
+            let bytes = fs::read(folder.join("answers.f32")).unwrap();
+            bytes.chunks_exact(4).map(single).collect()
+        }
+    };
     numbers.chunks_exact(16).map(Answer::from_numbers).collect()
+}
+
+/// Makes Node read `.js` as modules, as browsers do.
+const ES_MODULES: &str = r#"{"type": "module"}"#;
+
+/// The program that answers queries in a language, or what is missing for it.
+fn runner(language: Language) -> Result<Command, String> {
+    let (program, script) = match language {
+        Language::JavaScript => (node().ok_or("no node")?, "run_js.mjs"),
+        Language::Osl => (python("numpy, bpy").ok_or("no python3 with numpy, bpy")?, "run_osl.py"),
+        _ => (python("numpy, wgpu").ok_or("no python3 with numpy, wgpu")?, "run_shaders.py"),
+    };
+    let mut command = Command::new(program);
+    command.arg(here(script));
+    Ok(command)
 }
 
 /// What a shader was asked and answered.
@@ -369,11 +395,7 @@ type Answered = (Vec<Query>, Vec<Answer>);
 
 /// The results of each cube's shader, or why they are missing.
 fn answers(language: Language, cubes: &[Cube]) -> Result<Vec<Answered>, String> {
-    let (packages, script) = match language {
-        Language::Osl => ("numpy, bpy", "run_osl.py"),
-        _ => ("numpy, wgpu", "run_shaders.py"),
-    };
-    let python = python(packages).ok_or_else(|| format!("no python3 with {packages}"))?;
+    let mut command = runner(language)?;
     if glslang(language).is_some() && !runs("glslangValidator") {
         return Err("no glslangValidator".into());
     }
@@ -383,9 +405,8 @@ fn answers(language: Language, cubes: &[Cube]) -> Result<Vec<Answered>, String> 
     for (i, (cube, asked)) in cubes.iter().zip(&asked).enumerate() {
         prepare(&at(i), cube, language, asked);
     }
-    let mut command = Command::new(python);
-    command.arg(here(script)).args((0..cubes.len()).map(at));
-    let output = command.output().unwrap();
+    fs::write(folder.path().join("package.json"), ES_MODULES).unwrap();
+    let output = command.args((0..cubes.len()).map(at)).output().unwrap();
     let failed = String::from_utf8_lossy(&output.stderr);
     if failed.contains(NO_DRIVER) {
         return Err(NO_DRIVER.into());
@@ -623,6 +644,11 @@ fn glsl_answers_what_the_library_answers() {
 #[test]
 fn hlsl_answers_what_the_library_answers() {
     check_language(Language::Hlsl, "hlsl_answers_what_the_library_answers");
+}
+
+#[test]
+fn javascript_answers_what_the_library_answers() {
+    check_language(Language::JavaScript, "javascript_answers_what_the_library_answers");
 }
 
 #[test]

@@ -87,7 +87,7 @@ fn upglow_bin(dye: i32, which: i32, value: f32) -> i32 {
     var low: i32 = 0;
     var high: i32 = UPGLOW_BINS;
     for (var halving: i32 = 0; halving < UPGLOW_HALVINGS; halving += 1) {
-        let middle: i32 = (low + high) / 2;
+        let middle: i32 = i32((low + high) / 2);
         if (upglow_integral(dye, middle, which) <= value) {
             low = middle;
         } else {

@@ -5,6 +5,9 @@ struct UpglowCorner {
     level: f32, // the parabola there
     rise: f32, // the parabola's coefficient of the distance from there, 1/nm
     bend: f32, // and of its square, 1/nm²
+//@if js
+    node: i32, // number of its node in the cube, red fastest
+//@end
 //@if concentrated
     concentration: f32, // 0 where nothing fluoresces
     returned_nm: f32, // what fluorescence gives back of light that is 1 at every wavelength
@@ -55,6 +58,9 @@ fn upglow_corner(weight: f32, red: i32, row: i32) -> UpglowCorner {
     corner.level = parabola.y;
     corner.rise = parabola.z;
     corner.bend = parabola.w;
+//@if js
+    corner.node = row * UPGLOW_RESOLUTION + red;
+//@end
 //@if fluorescent
     let numbers: vec4f = upglow_node(2 * red + 1, row);
 //@end
