@@ -31,6 +31,23 @@ pub fn lab_from_xyz(xyz: Xyz, white: Xyz) -> Lab {
     lab_jacobian(xyz, white).0
 }
 
+/// The color with these coordinates relative to `white`; the inverse of [`lab_from_xyz`].
+///
+/// # Source
+///
+/// `cie015`, section 8.2.1 and appendix D.
+pub fn xyz_from_lab(lab: Lab, white: Xyz) -> Xyz {
+    let fy = (lab.l + 16.0) / 116.0;
+    let f = [fy + lab.a / 500.0, fy, fy - lab.b / 200.0];
+    Xyz([0, 1, 2].map(|k| white.0[k] * expand(f[k])))
+}
+
+/// The inverse of [`compress`].
+fn expand(response: f64) -> f64 {
+    let cube = response * response * response;
+    if cube > LINEAR_BELOW { cube } else { (response - 16.0 / 116.0) / LINEAR_SLOPE }
+}
+
 /// The coordinates, and their derivatives `[L a b][X Y Z]`.
 #[inline]
 pub(crate) fn lab_jacobian(xyz: Xyz, white: Xyz) -> (Lab, Matrix3) {

@@ -72,7 +72,7 @@ pub use contract::{Contract, ContractError, SeenUnder};
 pub use dyes::MeasuredDye;
 pub use grid::{Grid, GridError};
 pub use illuminant::{Illuminant, IlluminantError};
-pub use lab::{Lab, lab_from_xyz};
+pub use lab::{Lab, lab_from_xyz, xyz_from_lab};
 pub use matrix::Matrix3;
 pub use metric::{Goal, Metric};
 pub use names::NameError;

@@ -1,0 +1,113 @@
+//! How colorful materials of each kind can be, by lightness and hue.
+
+use rayon::prelude::*;
+use upglow::{Cube, Model};
+use upglow_color::rounding::to_single;
+use upglow_color::{
+    Colorimetry, Contract, Lab, LinearRgb, RgbSpace, StandingKind, xyz_from_lab,
+};
+use upglow_fit::{CubeSummary, FitOptions, FitOptionsError, Fitter, Preset, StandingTable};
+
+/// Lightness in steps of 3.125 from 0 to 100.
+pub(crate) const LIGHTNESSES: usize = 33;
+/// Hue in steps of 5°.
+pub(crate) const HUES: usize = 72;
+/// A reflectance within the cube's slope limit, any reflectance, any fluorescent material.
+pub(crate) const KINDS: usize = 3;
+
+/// More colorful than any fluorescent material, C*.
+const MOST_CHROMA: f64 = 1024.0;
+/// Halvings from there: to half a unit of chroma.
+const HALVINGS: u32 = 11;
+/// Halvings between gray and the border of all reflectances: to less than a unit of chroma.
+const HALVINGS_OF_FITS: u32 = 8;
+
+/// Fits reflectances within a slope limit.
+///
+/// # Errors
+///
+/// [`FitOptionsError`] if the limit is out of range.
+pub(crate) fn passive_fitter(
+    contract: &Contract,
+    slope_max_per_nm: Option<f64>,
+) -> Result<Fitter, FitOptionsError> {
+    let options = FitOptions {
+        slope_max_per_nm,
+        slope_under_dyes_per_nm: slope_max_per_nm,
+        relaxed: false,
+        ..Preset::default().options()
+    };
+    Fitter::new(contract, &Model::Reflectance, options)
+}
+
+/// Greatest C* of each kind of material, `[kind][lightness][hue]`.
+///
+/// The search assumes that along a hue every color short of the border is within reach, as it is for
+/// convex sets in all but the corners of Lab.
+///
+/// # Errors
+///
+/// [`FitOptionsError`] if the cube's slope limit is out of range.
+pub(crate) fn borders(cube: &Cube) -> Result<Vec<f32>, FitOptionsError> {
+    // All real colors have components above 0 in this space, which fits need.
+    let space = RgbSpace::named("aces2065-1").unwrap_or_default();
+    let contract = Contract { space, ..cube.contract().clone() };
+    let table = StandingTable::new(&contract);
+    let fitter = passive_fitter(&contract, cube.fit().slope_max_per_nm)?;
+    let colorimetry = table.colorimetry();
+    let directions: Vec<Direction> = (0..LIGHTNESSES * HUES).map(Direction::new).collect();
+    let found: Vec<[f64; KINDS]> = directions
+        .into_par_iter()
+        .map(|direction| {
+            let rgb = |chroma| direction.rgb(colorimetry, chroma);
+            let any = |kind| {
+                furthest(MOST_CHROMA, HALVINGS, |chroma| table.kind(rgb(chroma)) <= kind)
+            };
+            let reflectance = any(StandingKind::Reflectance);
+            let smooth = furthest(reflectance, HALVINGS_OF_FITS, |chroma| {
+                let fit = fitter.fit(rgb(chroma));
+                fit.is_ok_and(|fit| fit.de2000 <= CubeSummary::EXACT_DE2000)
+            });
+            [smooth, reflectance, any(StandingKind::NeedsFluorescence)]
+        })
+        .collect();
+    let of_kind = |kind: usize| found.iter().map(move |chroma| chroma[kind]);
+    Ok((0..KINDS).flat_map(of_kind).map(to_single).collect())
+}
+
+/// The greatest chroma that is within reach, between 0 and `most`.
+fn furthest(most: f64, halvings: u32, is_reached: impl Fn(f64) -> bool) -> f64 {
+    if is_reached(most) {
+        return most;
+    }
+    let (mut inside, mut outside) = (0.0, most);
+    for _ in 0..halvings {
+        let middle = 0.5 * (inside + outside);
+        if is_reached(middle) {
+            inside = middle;
+        } else {
+            outside = middle;
+        }
+    }
+    inside
+}
+
+/// A lightness and a hue.
+struct Direction {
+    lightness: f64,
+    cos: f64,
+    sin: f64,
+}
+
+impl Direction {
+    fn new(index: usize) -> Self {
+        let hue = (index % HUES) as f64 * std::f64::consts::TAU / HUES as f64;
+        let lightness = (index / HUES) as f64 * 100.0 / (LIGHTNESSES - 1) as f64;
+        Self { lightness, cos: hue.cos(), sin: hue.sin() }
+    }
+
+    fn rgb(&self, colorimetry: &Colorimetry, chroma: f64) -> LinearRgb {
+        let lab = Lab { l: self.lightness, a: chroma * self.cos, b: chroma * self.sin };
+        colorimetry.rgb_from_xyz(xyz_from_lab(lab, colorimetry.white()))
+    }
+}

@@ -1,0 +1,198 @@
+//! What the page knows of a cube: its shader's files, colors of its nodes, and the lights.
+
+use std::borrow::Cow;
+use std::collections::HashMap;
+
+use rayon::prelude::*;
+use safetensors::{Dtype, View};
+use serde_json::{Value, json};
+use upglow::{Cube, ModelOnGrid};
+use upglow_color::{Adaptation, Contract, Grid, RgbSpace};
+use upglow_fit::{CubeSummary, FitOptionsError};
+use upglow_shader::{Language, Shader, ShaderError};
+
+use crate::borders::{HUES, KINDS, LIGHTNESSES, borders};
+use crate::lights::{ShownLight, ULTRAVIOLET_BELOW_NM, lights};
+
+/// The name of the shader's files, and of the metadata entry with what is no array.
+const NAME: &str = "explorer";
+
+/// RGB spaces that colors can be given in, besides the cube's own.
+const SPACES: [(&str, &str); 3] = [("acescg", "ACEScg"), ("rec2020", "Rec.2020"), ("srgb", "sRGB")];
+
+/// Why a cube cannot be explored.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ExplorerError {
+    /// The cube has no shader.
+    #[error(transparent)]
+    Shader(#[from] ShaderError),
+    /// The cube's slope limit is out of range.
+    #[error(transparent)]
+    Options(#[from] FitOptionsError),
+}
+
+/// What the page knows of a cube.
+#[derive(Clone, Debug)]
+pub struct CubeData {
+    /// The cube's functions in JavaScript.
+    pub script: String,
+    /// The cube's functions in WGSL.
+    pub shader: String,
+    /// The arrays, and what is said of them, as safetensors; `page/js/cube.js` reads it.
+    pub arrays: Vec<u8>,
+}
+
+impl CubeData {
+    /// All but the borders, which take longer.
+    ///
+    /// # Errors
+    ///
+    /// [`ExplorerError::Shader`] if the cube has more nodes than shaders support.
+    pub fn new(cube: &Cube, name: &str) -> Result<Self, ExplorerError> {
+        let Shader { source: script, mut payload } =
+            Shader::new(cube, Language::JavaScript, NAME)?;
+        let shader = Shader::new(cube, Language::Wgsl, NAME)?.source;
+        let textures = payload.pop().map(|file| file.bytes).unwrap_or_default();
+        let shown: Vec<ShownLight> = lights(cube.contract())
+            .iter()
+            .map(|light| ShownLight::new(cube.contract(), light))
+            .collect();
+        let mut tensors = vec![Tensor::bytes("textures", textures)];
+        tensors.extend(node_tensors(cube));
+        tensors.extend(light_tensors(&shown));
+        let metadata = HashMap::from([(NAME.into(), description(cube, name, &shown).to_string())]);
+        let views = tensors.iter().map(|tensor| (tensor.name, tensor));
+        let arrays = safetensors::serialize(views, Some(metadata))
+            .expect("arrays are as long as their shapes");
+        Ok(Self { script, shader, arrays })
+    }
+
+    /// The greatest chroma of each kind of material, `[kind][lightness][hue]`, as little-endian floats.
+    ///
+    /// # Errors
+    ///
+    /// [`ExplorerError::Options`] if the cube's slope limit is out of range.
+    pub fn borders(cube: &Cube) -> Result<Vec<u8>, ExplorerError> {
+        Ok(borders(cube)?.into_iter().flat_map(f32::to_le_bytes).collect())
+    }
+}
+
+/// What is no array.
+fn description(cube: &Cube, name: &str, lights: &[ShownLight]) -> Value {
+    let contract = cube.contract();
+    let colorimetry = contract.on(Grid::FIT);
+    let dyes = cube.model().dyes().map_or(&[][..], |dyes| dyes.set().dyes());
+    let spaces = SPACES.map(|(space, label)| {
+        let space = RgbSpace::named(space).unwrap_or_default();
+        let contract = Contract { space, adaptation: Adaptation::Bradford, ..contract.clone() };
+        json!({ "name": label, "from_xyz": contract.on(Grid::FIT).rgb_from_xyz_matrix().0 })
+    });
+    json!({
+        "name": name,
+        "version": env!("CARGO_PKG_VERSION"),
+        "resolution": cube.resolution(),
+        "model": cube.model().name(),
+        "space": contract.space.name(),
+        "observer": contract.observer.name(),
+        "white": colorimetry.white().0,
+        "xyz_from_rgb": colorimetry.xyz_from_rgb_matrix().0,
+        "rgb_from_xyz": colorimetry.rgb_from_xyz_matrix().0,
+        "spaces": spaces,
+        "dyes": dyes.iter().map(|dye| &dye.name).collect::<Vec<_>>(),
+        "fit": cube.fit(),
+        "summary": CubeSummary::of(cube),
+        "lights": lights.iter().map(ShownLight::description).collect::<Vec<_>>(),
+        "ultraviolet_below_nm": ULTRAVIOLET_BELOW_NM,
+        "borders": [KINDS, LIGHTNESSES, HUES],
+    })
+}
+
+/// Color and dose of each node.
+fn node_tensors(cube: &Cube) -> [Tensor; 2] {
+    let sums = ModelOnGrid::new(cube.model(), &cube.contract().on(Grid::FIT));
+    let count = cube.nodes().len();
+    let material = |index| cube.node_material(index);
+    let xyz: Vec<f64> =
+        (0..count).into_par_iter().flat_map_iter(|i| sums.color(material(i)).0).collect();
+    let dose = (0..count).map(|i| material(i).fluorescence.dose());
+    [
+        Tensor::singles("node_xyz", &[count, 3], xyz),
+        Tensor::singles("node_dose", &[count], dose),
+    ]
+}
+
+/// What is summed under each light. The first is the contract's own.
+fn light_tensors(lights: &[ShownLight]) -> [Tensor; 5] {
+    let count = lights.len();
+    let on_fit = &[count, Grid::FIT.len()];
+    let seen = || lights.iter().map(|light| &light.seen.colorimetry);
+    let matching = seen().next().map_or(&[][..], |own| own.matching());
+    [
+        Tensor::doubles("matching", &[matching.len(), 3], matching.iter().flatten()),
+        Tensor::doubles("lights_nm", on_fit, seen().flat_map(|light| light.wavelengths_nm())),
+        Tensor::doubles("lights_irradiance", on_fit, seen().flat_map(|light| light.irradiance())),
+        Tensor::doubles(
+            "lights_weights",
+            &[count, Grid::FIT.len(), 3],
+            seen().flat_map(|light| light.weights().iter().flatten()),
+        ),
+        Tensor::singles(
+            "lights_power",
+            &[count, Grid::FINE.len()],
+            lights.iter().flat_map(|light| light.power.iter().copied()),
+        ),
+    ]
+}
+
+/// One array.
+#[derive(Debug)]
+struct Tensor {
+    name: &'static str,
+    dtype: Dtype,
+    shape: Vec<usize>,
+    bytes: Vec<u8>,
+}
+
+impl Tensor {
+    fn bytes(name: &'static str, bytes: Vec<u8>) -> Self {
+        Self { name, dtype: Dtype::U8, shape: vec![bytes.len()], bytes }
+    }
+
+    fn singles(
+        name: &'static str,
+        shape: &[usize],
+        values: impl IntoIterator<Item = f64>,
+    ) -> Self {
+        let single = |value| upglow_color::rounding::to_single(value).to_le_bytes();
+        let bytes = values.into_iter().flat_map(single).collect();
+        Self { name, dtype: Dtype::F32, shape: shape.into(), bytes }
+    }
+
+    fn doubles<'v>(
+        name: &'static str,
+        shape: &[usize],
+        values: impl IntoIterator<Item = &'v f64>,
+    ) -> Self {
+        let bytes = values.into_iter().flat_map(|value| value.to_le_bytes()).collect();
+        Self { name, dtype: Dtype::F64, shape: shape.into(), bytes }
+    }
+}
+
+impl View for &Tensor {
+    fn dtype(&self) -> Dtype {
+        self.dtype
+    }
+
+    fn shape(&self) -> &[usize] {
+        &self.shape
+    }
+
+    fn data(&self) -> Cow<'_, [u8]> {
+        Cow::Borrowed(&self.bytes)
+    }
+
+    fn data_len(&self) -> usize {
+        self.bytes.len()
+    }
+}

@@ -1,0 +1,18 @@
+//! A page to explore a cube: pick colors, see their spectra, and light them.
+//!
+//! The page is HTML, CSS and JavaScript of this crate (`page/`), without other dependencies. It evaluates
+//! materials with the functions that [`upglow_shader::Language::JavaScript`] exports, so that it says no
+//! formula of a model again.
+//!
+//! - one file that needs no program: [`offline_page`]
+//! - what the page knows of a cube: [`CubeData`]
+//!
+//! Out of scope: reading cubes, opening a browser.
+
+mod borders;
+mod cube_data;
+mod lights;
+mod page;
+
+pub use cube_data::{CubeData, ExplorerError};
+pub use page::offline_page;

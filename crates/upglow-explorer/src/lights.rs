@@ -1,0 +1,75 @@
+//! The lights that materials are shown under.
+
+use upglow_color::{Adaptation, Contract, Grid, Illuminant, Matrix3, RgbSpace, SeenUnder, Spectrum};
+
+/// The peak and the width of an ultraviolet lamp for minerals and banknotes, nm.
+const LAMP_NM: [f64; 2] = [365.0, 12.0];
+
+/// Ultraviolet light ends here, nm: what the page scales, and what a filter takes away.
+pub(crate) const ULTRAVIOLET_BELOW_NM: f64 = 400.0;
+
+/// The contract's light, the built-in ones, daylight behind a filter, and an ultraviolet lamp.
+pub(crate) fn lights(contract: &Contract) -> Vec<Illuminant> {
+    let own = &contract.illuminant;
+    let built_in = Illuminant::NAMES.iter().filter_map(|name| Illuminant::named(name).ok());
+    let others = built_in.chain(filtered_daylight()).chain(lamp());
+    std::iter::once(own.clone()).chain(others.filter(|light| light.name() != own.name())).collect()
+}
+
+fn lamp() -> Option<Illuminant> {
+    let [peak_nm, fwhm_nm] = LAMP_NM;
+    Illuminant::line(&format!("{peak_nm} nm lamp"), peak_nm, fwhm_nm).ok()
+}
+
+/// D65 without ultraviolet.
+fn filtered_daylight() -> Option<Illuminant> {
+    let daylight = Illuminant::default();
+    let is_kept = |nm: f64| if nm < ULTRAVIOLET_BELOW_NM { 0.0 } else { 1.0 };
+    let samples = Grid::FINE.wavelengths_nm().zip(daylight.power().values());
+    let power = samples.map(|(nm, power)| is_kept(nm) * power).collect();
+    let power = Spectrum::new(Grid::FINE, power).ok()?;
+    Illuminant::from_spectrum(&format!("{} without UV", daylight.name()), &power).ok()
+}
+
+/// A light, with all that the page needs to show materials under it.
+#[derive(Clone, Debug)]
+pub(crate) struct ShownLight {
+    pub(crate) name: String,
+    pub(crate) seen: SeenUnder,
+    /// Its power on [`Grid::FINE`] over the greatest.
+    pub(crate) power: Vec<f64>,
+}
+
+impl ShownLight {
+    pub(crate) fn new(contract: &Contract, light: &Illuminant) -> Self {
+        let power = light.power().values();
+        let peak = power.iter().copied().fold(0.0, f64::max);
+        Self {
+            name: light.name().into(),
+            seen: contract.seen_under(light, Grid::FIT),
+            power: power.iter().map(|power| power / peak).collect(),
+        }
+    }
+
+    /// Linear RGB of a screen of this space from XYZ under the light: what is seen as white is the
+    /// screen's white.
+    fn screen_from_xyz(&self, space: &str) -> Matrix3 {
+        let space = RgbSpace::named(space).unwrap_or_default();
+        let screen = Contract { space, ..Contract::default() }.on(Grid::FIT);
+        let adapted = Adaptation::default().target_from_source(self.seen.white, screen.white());
+        screen.rgb_from_xyz_matrix() * adapted
+    }
+
+    /// What the page reads of it besides its numbers by wavelength.
+    pub(crate) fn description(&self) -> serde_json::Value {
+        serde_json::json!({
+            "name": self.name,
+            "is_adapted": self.seen.is_adapted,
+            "white": self.seen.white.0,
+            "screen": {
+                "srgb": self.screen_from_xyz("srgb").0,
+                "p3": self.screen_from_xyz("p3-d65").0,
+            },
+        })
+    }
+}

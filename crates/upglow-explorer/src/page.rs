@@ -1,0 +1,73 @@
+//! The page: one HTML text made of the files in `page/`.
+
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use upglow::Cube;
+
+use crate::cube_data::{CubeData, ExplorerError};
+
+const HTML: &str = include_str!("../page/index.html");
+const STYLE: &str = include_str!("../page/style.css");
+
+/// Each after those that it imports.
+const SCRIPTS: [&str; 13] = [
+    include_str!("../page/js/color.js"),
+    include_str!("../page/js/state.js"),
+    include_str!("../page/js/server.js"),
+    include_str!("../page/js/cube.js"),
+    include_str!("../page/js/chart.js"),
+    include_str!("../page/js/picker.js"),
+    include_str!("../page/js/spectra.js"),
+    include_str!("../page/js/heat.js"),
+    include_str!("../page/js/why.js"),
+    include_str!("../page/js/relight.js"),
+    include_str!("../page/js/sphere.js"),
+    include_str!("../page/js/tools.js"),
+    include_str!("../page/js/main.js"),
+];
+
+/// The page with a cube in it, which needs neither a server nor a network.
+///
+/// # Errors
+///
+/// [`ExplorerError`] if the cube has more nodes than shaders support, or a slope limit out of range.
+pub fn offline_page(cube: &Cube, name: &str) -> Result<String, ExplorerError> {
+    let CubeData { script, shader, arrays } = CubeData::new(cube, name)?;
+    let borders = CubeData::borders(cube)?;
+    let data = [
+        embedded("cube-arrays", &STANDARD.encode(arrays)),
+        embedded("cube-borders", &STANDARD.encode(borders)),
+        embedded("cube-shader", &STANDARD.encode(shader)),
+    ];
+    Ok(page(&data.concat(), Some(&script)))
+}
+
+/// The page that a server gives out, which asks it for cubes.
+#[cfg_attr(not(feature = "server"), expect(dead_code, reason = "only servers need it"))]
+pub(crate) fn served_page() -> String {
+    page("", None)
+}
+
+/// Text that no browser shows or runs; `text` has only letters of base64.
+fn embedded(id: &str, text: &str) -> String {
+    format!("<script type=\"application/octet-stream\" id=\"{id}\">{text}</script>\n")
+}
+
+/// The page around data and a cube's functions.
+fn page(data: &str, functions: Option<&str>) -> String {
+    let script: String = functions.into_iter().chain(SCRIPTS).map(in_one_scope).collect();
+    HTML.replace("/*STYLE*/", STYLE)
+        .replace("<!--DATA-->", data)
+        // Last, so that nothing in it is taken for a place of the others.
+        .replace("/*SCRIPT*/", &script)
+}
+
+/// A module as part of one script: without what it imports from the others, its exports as plain names.
+fn in_one_scope(module: &str) -> String {
+    let mut text = String::with_capacity(module.len());
+    for line in module.lines().filter(|line| !line.starts_with("import ")) {
+        text += line.strip_prefix("export ").unwrap_or(line);
+        text.push('\n');
+    }
+    text
+}
