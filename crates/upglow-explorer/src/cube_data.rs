@@ -86,7 +86,12 @@ fn description(cube: &Cube, name: &str, lights: &[ShownLight]) -> Value {
     let spaces = SPACES.map(|(space, label)| {
         let space = RgbSpace::named(space).unwrap_or_default();
         let contract = Contract { space, adaptation: Adaptation::Bradford, ..contract.clone() };
-        json!({ "name": label, "from_xyz": contract.on(Grid::FIT).rgb_from_xyz_matrix().0 })
+        let colorimetry = contract.on(Grid::FIT);
+        json!({
+            "name": label,
+            "from_xyz": colorimetry.rgb_from_xyz_matrix().0,
+            "to_xyz": colorimetry.xyz_from_rgb_matrix().0,
+        })
     });
     json!({
         "name": name,

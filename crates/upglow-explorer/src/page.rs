@@ -10,11 +10,12 @@ const HTML: &str = include_str!("../page/index.html");
 const STYLE: &str = include_str!("../page/style.css");
 
 /// Each after those that it imports.
-const SCRIPTS: [&str; 13] = [
+const SCRIPTS: [&str; 14] = [
     include_str!("../page/js/color.js"),
     include_str!("../page/js/state.js"),
     include_str!("../page/js/server.js"),
     include_str!("../page/js/cube.js"),
+    include_str!("../page/js/dom.js"),
     include_str!("../page/js/chart.js"),
     include_str!("../page/js/picker.js"),
     include_str!("../page/js/spectra.js"),

@@ -1,0 +1,3 @@
+export function makeHeat() {
+    return { draw() {} };
+}

@@ -1,0 +1,3 @@
+export function makeSphere() {
+    return { draw() {} };
+}

@@ -1,0 +1,3 @@
+export function makeTools() {
+    return { draw() {} };
+}

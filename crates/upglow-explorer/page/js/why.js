@@ -1,0 +1,3 @@
+export function makeWhy() {
+    return { draw() {} };
+}
