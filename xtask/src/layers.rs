@@ -9,18 +9,23 @@ use crate::step::{StepError, metadata};
 /// Each crate of the workspace, and the crates of the workspace that it may depend on.
 ///
 /// Development dependencies count as well: a test that needs an upper layer belongs there.
-const ALLOWED: [(&str, &[&str]); 12] = [
+const ALLOWED: [(&str, &[&str]); 13] = [
     ("upglow-color", &[]),
     ("upglow", &["upglow-color"]),
     ("upglow-shader", &["upglow", "upglow-color"]),
     ("upglow-fit", &["upglow", "upglow-color"]),
     ("upglow-image", &["upglow-fit", "upglow", "upglow-color"]),
+    (
+        "upglow-explorer",
+        &["upglow-image", "upglow-shader", "upglow-fit", "upglow", "upglow-color"],
+    ),
     ("upglow-svg", &[]),
     ("upglow-terminal", &["upglow-fit", "upglow", "upglow-color"]),
     ("upglow-study", &["upglow-terminal", "upglow-svg", "upglow-fit", "upglow", "upglow-color"]),
     (
         "upglow-cli",
         &[
+            "upglow-explorer",
             "upglow-terminal",
             "upglow-svg",
             "upglow-image",

@@ -43,7 +43,7 @@ pub(crate) enum Command {
     Verify(VerifyArgs),
     /// Show the material of one color
     Color(ColorArgs),
-    /// Convert a cube for other programs: CSV, coefficient table or shader source
+    /// Convert a cube for other programs: CSV, coefficient table or shader source, or a page to explore it
     Export(ExportArgs),
     /// Convert pictures to files of materials, spectra or colors under a light
     Bake(Box<BakeArgs>),
@@ -149,8 +149,8 @@ pub(crate) struct ExportArgs {
     /// File to write
     pub(crate) output: PathBuf,
     /// csv: one line per node; coeff: reflectances only, for Mitsuba 3 and colour-science;
-    /// the others: shader source, with its textures beside it [default: by the suffix of the
-    /// output]
+    /// html: a page to explore it with, offline; the others: shader source, with its textures beside
+    /// it [default: by the suffix of the output]
     #[arg(long, value_name = "NAME", value_parser = word::<ExportFormat>())]
     pub(crate) format: Option<ExportFormat>,
     /// Nodes along each axis of a coeff table, 2 to 128 [default: 64]
@@ -169,6 +169,7 @@ pub(crate) struct ExportArgs {
 pub(crate) enum ExportFormat {
     Csv,
     Coeff,
+    Html,
     Shader(Language),
 }
 
@@ -177,6 +178,7 @@ choices!(
     "format",
     Csv = "csv",
     Coeff = "coeff",
+    Html = "html",
     Shader(Language::Wgsl) = "wgsl",
     Shader(Language::Glsl) = "glsl",
     Shader(Language::Hlsl) = "hlsl",

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use serde::Serialize;
 use upglow::{Cube, Model, Node, Sigmoid, Vertex};
 use upglow_color::Choice;
+use upglow_explorer::offline_page;
 use upglow_fit::{BuildError, Preset, fit_coefficients};
 use upglow_shader::{Language, Shader, ShaderError};
 use upglow_terminal::{Console, Failure, Report};
@@ -41,6 +42,7 @@ pub(crate) fn run(args: &ExportArgs, console: &Console) -> Result<(), Failure> {
     let (bytes, nodes) = match kind {
         ExportFormat::Csv => (csv(&cube).into_bytes(), cube.nodes().len()),
         ExportFormat::Coeff => coeff(args, &cube, console)?,
+        ExportFormat::Html => (page(args, &cube)?, cube.nodes().len()),
         ExportFormat::Shader(language) => {
             let (source, written) = shader(args, &cube, language)?;
             textures = written;
@@ -56,6 +58,13 @@ pub(crate) fn run(args: &ExportArgs, console: &Console) -> Result<(), Failure> {
         slope_max_per_nm: (kind == ExportFormat::Coeff).then(|| table_limit(args)),
         textures,
     })
+}
+
+/// The page to explore the cube with.
+fn page(args: &ExportArgs, cube: &Cube) -> Result<Vec<u8>, Failure> {
+    let name = args.file.file_stem().unwrap_or_default().to_string_lossy();
+    let page = offline_page(cube, &name).map_err(|error| Failure::file(&args.file, error))?;
+    Ok(page.into_bytes())
 }
 
 /// Writes the textures of a shader, and returns its source and their names. The source is written

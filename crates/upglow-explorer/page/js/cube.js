@@ -14,12 +14,11 @@ function readArrays(buffer) {
     const header = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 8, length)));
     const arrays = {};
     const types = { U8: Uint8Array, F32: Float32Array, F64: Float64Array };
-    for (const [name, { dtype, data_offsets: [start, end] }] of Object.entries(header)) {
-        if (types[dtype]) {
-            arrays[name] = new types[dtype](buffer.slice(8 + length + start, 8 + length + end));
-        }
+    const { __metadata__: metadata, ...tensors } = header;
+    for (const [name, { dtype, data_offsets: [start, end] }] of Object.entries(tensors)) {
+        arrays[name] = new types[dtype](buffer.slice(8 + length + start, 8 + length + end));
     }
-    return { arrays, metadata: JSON.parse(header.__metadata__.explorer) };
+    return { arrays, metadata: JSON.parse(metadata.explorer) };
 }
 
 // A light as materials are summed under it.

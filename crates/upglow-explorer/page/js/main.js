@@ -157,6 +157,9 @@ async function start() {
     document.documentElement.dataset.screen = SCREEN_NAME;
 }
 
-start().catch((error) => app.say(error.message));
+start().catch((error) => {
+    app.say(error.message);
+    throw error;
+});
 // For the console, and for tests.
 globalThis.explorer = { app, set, state };

@@ -1,12 +1,16 @@
-fn upglow_corner_reflectance(c: UpglowCorner, nm: f32) -> f32 {
+// What a corner adds to the reflectance under the dyes.
+fn upglow_corner_base(c: UpglowCorner, nm: f32) -> f32 {
     let d: f32 = nm - c.edge_nm;
     let x: f32 = c.level + d * (c.rise + d * c.bend);
-    let reflected: f32 = c.weight * (0.5 + 0.5 * x / sqrt(1.0 + x * x));
+    return c.weight * (0.5 + 0.5 * x / sqrt(1.0 + x * x));
+}
+
+fn upglow_corner_reflectance(c: UpglowCorner, nm: f32) -> f32 {
 //@if fluorescent
-    return reflected * (1.0 - upglow_absorbed(c, nm));
+    return upglow_corner_base(c, nm) * (1.0 - upglow_absorbed(c, nm));
 //@end
 //@if passive
-    return reflected;
+    return upglow_corner_base(c, nm);
 //@end
 }
 
