@@ -3,10 +3,8 @@
 use rayon::prelude::*;
 use upglow::{Cube, Model};
 use upglow_color::rounding::to_single;
-use upglow_color::{
-    Colorimetry, Contract, Lab, LinearRgb, RgbSpace, StandingKind, xyz_from_lab,
-};
-use upglow_fit::{CubeSummary, FitOptions, FitOptionsError, Fitter, Preset, StandingTable};
+use upglow_color::{ColorSolid, ColorSolids, Contract, Grid, Lab, RgbSpace, Xyz, xyz_from_lab};
+use upglow_fit::{CubeSummary, FitOptions, FitOptionsError, Fitter, Preset};
 
 /// Lightness in steps of 3.125 from 0 to 100.
 pub(crate) const LIGHTNESSES: usize = 33;
@@ -16,11 +14,11 @@ pub(crate) const HUES: usize = 72;
 pub(crate) const KINDS: usize = 3;
 
 /// More colorful than any fluorescent material, C*.
-const MOST_CHROMA: f64 = 1024.0;
+const MOST_CHROMA: f64 = 512.0;
 /// Halvings from there: to half a unit of chroma.
-const HALVINGS: u32 = 11;
+const HALVINGS: u32 = 10;
 /// Halvings between gray and the border of all reflectances: to less than a unit of chroma.
-const HALVINGS_OF_FITS: u32 = 8;
+const HALVINGS_OF_FITS: u32 = 7;
 
 /// Fits reflectances within a slope limit.
 ///
@@ -52,23 +50,23 @@ pub(crate) fn borders(cube: &Cube) -> Result<Vec<f32>, FitOptionsError> {
     // All real colors have components above 0 in this space, which fits need.
     let space = RgbSpace::named("aces2065-1").unwrap_or_default();
     let contract = Contract { space, ..cube.contract().clone() };
-    let table = StandingTable::new(&contract);
+    let colorimetry = contract.on(Grid::FIT);
+    let solids = ColorSolids::new(&colorimetry);
     let fitter = passive_fitter(&contract, cube.fit().slope_max_per_nm)?;
-    let colorimetry = table.colorimetry();
     let directions: Vec<Direction> = (0..LIGHTNESSES * HUES).map(Direction::new).collect();
     let found: Vec<[f64; KINDS]> = directions
         .into_par_iter()
         .map(|direction| {
-            let rgb = |chroma| direction.rgb(colorimetry, chroma);
-            let any = |kind| {
-                furthest(MOST_CHROMA, HALVINGS, |chroma| table.kind(rgb(chroma)) <= kind)
+            let color = |chroma| direction.color(chroma, colorimetry.white());
+            let any = |solid: &ColorSolid| {
+                furthest(MOST_CHROMA, HALVINGS, |chroma| solid.contains(color(chroma)))
             };
-            let reflectance = any(StandingKind::Reflectance);
+            let reflectance = any(&solids.reflectance);
             let smooth = furthest(reflectance, HALVINGS_OF_FITS, |chroma| {
-                let fit = fitter.fit(rgb(chroma));
+                let fit = fitter.fit(colorimetry.rgb_from_xyz(color(chroma)));
                 fit.is_ok_and(|fit| fit.de2000 <= CubeSummary::EXACT_DE2000)
             });
-            [smooth, reflectance, any(StandingKind::NeedsFluorescence)]
+            [smooth, reflectance, any(&solids.fluorescence)]
         })
         .collect();
     let of_kind = |kind: usize| found.iter().map(move |chroma| chroma[kind]);
@@ -106,8 +104,8 @@ impl Direction {
         Self { lightness, cos: hue.cos(), sin: hue.sin() }
     }
 
-    fn rgb(&self, colorimetry: &Colorimetry, chroma: f64) -> LinearRgb {
+    fn color(&self, chroma: f64, white: Xyz) -> Xyz {
         let lab = Lab { l: self.lightness, a: chroma * self.cos, b: chroma * self.sin };
-        colorimetry.rgb_from_xyz(xyz_from_lab(lab, colorimetry.white()))
+        xyz_from_lab(lab, white)
     }
 }

@@ -50,8 +50,7 @@ impl CubeData {
     ///
     /// [`ExplorerError::Shader`] if the cube has more nodes than shaders support.
     pub fn new(cube: &Cube, name: &str) -> Result<Self, ExplorerError> {
-        let Shader { source: script, mut payload } =
-            Shader::new(cube, Language::JavaScript, NAME)?;
+        let Shader { source: script, mut payload } = Shader::new(cube, Language::JavaScript, NAME)?;
         let shader = Shader::new(cube, Language::Wgsl, NAME)?.source;
         let textures = payload.pop().map(|file| file.bytes).unwrap_or_default();
         let shown: Vec<ShownLight> = lights(cube.contract())
@@ -121,10 +120,7 @@ fn node_tensors(cube: &Cube) -> [Tensor; 2] {
     let xyz: Vec<f64> =
         (0..count).into_par_iter().flat_map_iter(|i| sums.color(material(i)).0).collect();
     let dose = (0..count).map(|i| material(i).fluorescence.dose());
-    [
-        Tensor::singles("node_xyz", &[count, 3], xyz),
-        Tensor::singles("node_dose", &[count], dose),
-    ]
+    [Tensor::singles("node_xyz", &[count, 3], xyz), Tensor::singles("node_dose", &[count], dose)]
 }
 
 /// What is summed under each light. The first is the contract's own.
@@ -164,11 +160,7 @@ impl Tensor {
         Self { name, dtype: Dtype::U8, shape: vec![bytes.len()], bytes }
     }
 
-    fn singles(
-        name: &'static str,
-        shape: &[usize],
-        values: impl IntoIterator<Item = f64>,
-    ) -> Self {
+    fn singles(name: &'static str, shape: &[usize], values: impl IntoIterator<Item = f64>) -> Self {
         let single = |value| upglow_color::rounding::to_single(value).to_le_bytes();
         let bytes = values.into_iter().flat_map(single).collect();
         Self { name, dtype: Dtype::F32, shape: shape.into(), bytes }

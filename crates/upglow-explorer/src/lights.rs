@@ -1,6 +1,8 @@
 //! The lights that materials are shown under.
 
-use upglow_color::{Adaptation, Contract, Grid, Illuminant, Matrix3, RgbSpace, SeenUnder, Spectrum};
+use upglow_color::{
+    Adaptation, Contract, Grid, Illuminant, Matrix3, RgbSpace, SeenUnder, Spectrum,
+};
 
 /// The peak and the width of an ultraviolet lamp for minerals and banknotes, nm.
 const LAMP_NM: [f64; 2] = [365.0, 12.0];

@@ -30,6 +30,9 @@ const MOST_CHROMA = 150;
 const PIXELS = 192;
 const SAMPLES = 97;
 
+// Steep, so that the line of the cube's border lies on it between two samples.
+const OUTSIDE_SCALE = 100;
+
 // The borders, from the least to the greatest.
 const BORDERS = [
     ["smooth", "smooth reflectance"],
@@ -50,8 +53,8 @@ export function makePicker(root, app) {
     };
     const presses = [
         tab("Hue and chroma", { slice: "hue" }, () => state.slice === "hue"),
-        ...["red", "green", "blue"].map((name, k) => tab(
-            `RGB, ${name} fixed`,
+        ...["R", "G", "B"].map((name, k) => tab(
+            `${name} fixed`,
             { slice: "rgb", fixed: k },
             () => state.slice === "rgb" && state.fixed === k,
         )),
@@ -188,7 +191,7 @@ function borderLines(shown, cube) {
             const beyond = (kind) => (cube.borders ? chroma - cube.borderChroma(kind, lab[0], hue) : -1);
             fields[0][at] = beyond(0);
             fields[1][at] = beyond(1);
-            fields[2][at] = missedBy(cube, xyz, lab) - 1;
+            fields[2][at] = missedBy(cube, xyz, lab);
             fields[3][at] = beyond(2);
             fields[4][at] = beyondScreen(xyz, light);
         }
@@ -196,15 +199,11 @@ function borderLines(shown, cube) {
     return fields.flatMap((field, k) => casedLine(contour(field, SAMPLES, 100), BORDERS[k][0]));
 }
 
-// How far the cube's answer is from a color, ΔE00; what is outside its RGB counts as missed.
+// How much more than 1 ΔE00 the cube's answer misses a color by; outside its RGB, how far outside.
 function missedBy(cube, xyz, lab) {
     const rgb = cube.rgbOf(xyz);
     const outside = Math.max(...rgb.map((v) => Math.max(-v, v - 1)));
-    if (outside > 1e-6) {
-        return 1 + Math.min(100 * outside, 1);
-    }
-    // A step at the border of the cube would move its line by a sample.
-    return Math.min(de2000(lab, cube.labOf(cube.colorOf(rgb))), 2);
+    return Math.max(de2000(lab, cube.labOf(cube.colorOf(rgb))) - 1, OUTSIDE_SCALE * outside);
 }
 
 function casedLine(d, kind) {
