@@ -148,9 +148,9 @@ pub(crate) struct ExportArgs {
     pub(crate) file: PathBuf,
     /// File to write
     pub(crate) output: PathBuf,
-    /// csv: one line per node; coeff: reflectances only, for Mitsuba 3 and colour-science;
-    /// html: a page to explore it with, offline; the others: shader source, with its textures beside
-    /// it [default: by the suffix of the output]
+    /// csv: one line per node; coeff: reflectances only, for Mitsuba 3 and colour-science; html: a page
+    /// to explore it with, offline; js: a module of JavaScript, and the others shader source, with
+    /// textures beside them [default: by the suffix of the output]
     #[arg(long, value_name = "NAME", value_parser = word::<ExportFormat>())]
     pub(crate) format: Option<ExportFormat>,
     /// Nodes along each axis of a coeff table, 2 to 128 [default: 64]

@@ -107,26 +107,53 @@ mod tests {
         }
     }
 
+    /// The code of all templates, without comments.
+    fn code() -> impl Iterator<Item = &'static str> {
+        TEMPLATES.iter().flat_map(|t| t.lines()).filter_map(|line| line.split("//").next())
+    }
+
+    #[test]
+    fn quotients_of_integers_are_cut_where_a_language_has_no_integers() {
+        for line in code() {
+            for divisor in line.split(" / ").skip(1) {
+                let after = divisor.trim_start_matches(|c: char| c.is_ascii_digit());
+                let is_integer = after.len() < divisor.len() && !after.starts_with('.');
+                assert!(!is_integer || line.contains("= i32(("), "{line}");
+            }
+        }
+    }
+
+    /// A struct is a value in all languages but `JavaScript`, where a name of it is a reference.
+    #[test]
+    fn no_struct_is_changed_through_a_second_name() {
+        for line in code().map(str::trim) {
+            if let Some(copied) = line.strip_prefix("var ").and_then(|l| l.split_once(": Upglow")) {
+                let made = copied.1.ends_with(';') && !copied.1.contains(" = ")
+                    || copied.1.contains(" = upglow_");
+                assert!(made, "{line}");
+            }
+            let changed = line.split_once(" = ").map_or("", |(changed, _)| changed);
+            assert!(changed.matches('.').count() <= 1, "{line}");
+        }
+    }
+
     /// Reserved words of the languages that could be taken as names.
-    const RESERVED: &str = "active and asm auto binding case cast centroid channel class closure \
-        coherent column_major common compile constant continuing discard do double emit enum \
-        export extern external filter final fixed flat get goto group half handle highp hvec impl \
+    const RESERVED: &str = "active and arguments asm auto await binding case cast catch centroid channel class closure \
+        coherent column_major common compile constant continuing debugger delete discard do double emit enum eval \
+        export extends extern external filter final finally fixed flat get goto group half handle implements import instanceof highp hvec impl \
         in inline inout input interface invariant layout line lineadj linear long loop lowp match \
         matrix mediump mod module move namespace new noise normal not null of or out output \
         override package pass patch pixel point precise precision private protected ptr public \
         quad ref register resource sample sampler self set shader shared short signed sizeof \
-        smooth snorm static string super switch target template texture this trait triangle \
-        uniform union unit unorm unsigned use varying vector virtual void volatile where with";
+        smooth snorm static string super switch target template texture this throw trait try typeof triangle \
+        uniform union unit unorm unsigned use varying vector virtual void volatile where with yield";
 
     #[test]
     fn no_name_is_a_keyword_of_some_language() {
         let reserved: Vec<&str> = RESERVED.split_whitespace().collect();
-        for template in TEMPLATES {
-            for line in template.lines() {
-                let code = line.split("//").next().unwrap_or_default();
-                for word in code.split(|c: char| !c.is_ascii_alphanumeric() && c != '_') {
-                    assert!(!reserved.contains(&word), "{line}");
-                }
+        for line in code() {
+            for word in line.split(|c: char| !c.is_ascii_alphanumeric() && c != '_') {
+                assert!(!reserved.contains(&word), "{line}");
             }
         }
     }

@@ -47,8 +47,8 @@ fn rearranged(code: &str, in_struct: bool, language: Language) -> String {
     {
         return format!("{kind} {name}{rest}");
     }
-    if let Some(signature) = code.strip_prefix("fn ") {
-        return function(signature).unwrap_or_else(|| code.into());
+    if let Some(signature) = Signature::of(code) {
+        return signature.typed();
     }
     if let Some((name, rest)) = code.strip_prefix("for (var ").and_then(|c| c.split_once(": ")) {
         let (kind, rest) = rest.split_once(' ').unwrap_or((rest, ""));
@@ -84,9 +84,8 @@ fn untyped(code: &str, in_struct: bool) -> String {
             _ => format!("let {name}{rest}"),
         };
     }
-    if let Some((name, parameters, _, rest)) = code.strip_prefix("fn ").and_then(signature) {
-        let names: Vec<&str> = parameters.iter().map(|(name, _)| *name).collect();
-        return format!("function {name}({}) {rest}", names.join(", "));
+    if let Some(signature) = Signature::of(code) {
+        return signature.untyped();
     }
     if let Some((name, rest)) = code.strip_prefix("for (var ").and_then(|c| c.split_once(": ")) {
         return format!("for (let {name} {}", rest.split_once(' ').map_or(rest, |(_, rest)| rest));
@@ -120,21 +119,38 @@ fn constant(name: &str, kind: &str, value: &str, language: Language) -> String {
     }
 }
 
-/// `name(a: A, b: B) -> C {` as `C name(A a, B b) {`.
-fn function(code: &str) -> Option<String> {
-    let (name, parameters, kind, rest) = signature(code)?;
-    let parameters: Vec<String> =
-        parameters.iter().map(|(name, kind)| format!("{kind} {name}")).collect();
-    Some(format!("{kind} {name}({}) {rest}", parameters.join(", ")))
+/// The first line of a function, `name(a: A, b: B) -> C {`.
+struct Signature<'a> {
+    name: &'a str,
+    /// Names and types.
+    parameters: Vec<(&'a str, &'a str)>,
+    kind: &'a str,
+    rest: &'a str,
 }
 
-/// The name, parameters with their types, type and rest of `name(a: A, b: B) -> C {`.
-fn signature(code: &str) -> Option<(&str, Vec<(&str, &str)>, &str, &str)> {
-    let (name, rest) = code.split_once('(')?;
-    let (parameters, rest) = rest.split_once(") -> ")?;
-    let (kind, rest) = rest.split_once(' ')?;
-    let parameters: Option<_> = parameters.split(", ").map(|p| p.split_once(": ")).collect();
-    Some((name, parameters?, kind, rest))
+impl<'a> Signature<'a> {
+    fn of(code: &'a str) -> Option<Self> {
+        let (name, rest) = code.strip_prefix("fn ")?.split_once('(')?;
+        let (parameters, rest) = rest.split_once(") -> ")?;
+        let (kind, rest) = rest.split_once(' ')?;
+        let parameters: Option<_> = parameters.split(", ").map(|p| p.split_once(": ")).collect();
+        Some(Self { name, parameters: parameters?, kind, rest })
+    }
+
+    /// `C name(A a, B b) {`.
+    fn typed(&self) -> String {
+        let Self { name, parameters, kind, rest } = self;
+        let parameters: Vec<String> =
+            parameters.iter().map(|(name, kind)| format!("{kind} {name}")).collect();
+        format!("{kind} {name}({}) {rest}", parameters.join(", "))
+    }
+
+    /// `function name(a, b) {`.
+    fn untyped(&self) -> String {
+        let Self { name, parameters, rest, .. } = self;
+        let names: Vec<&str> = parameters.iter().map(|(name, _)| *name).collect();
+        format!("function {name}({}) {rest}", names.join(", "))
+    }
 }
 
 /// The line with each word in the language's own.

@@ -24,7 +24,7 @@ function upglow_check(textures) {
     }
     const bytes = new Uint8Array(textures);
     if (bytes.length < 64 || String.fromCharCode(...bytes.subarray(0, 8)) !== UPGLOW_MAGIC) {
-        throw new Error(`${UPGLOW_TEXTURES}: no textures of upglow: expected ${UPGLOW_MAGIC} first`);
+        throw new Error(`${UPGLOW_TEXTURES}: expected a file that begins with ${UPGLOW_MAGIC}`);
     }
     const version = new DataView(textures).getUint32(8, true);
     if (version !== UPGLOW_VERSION) {

@@ -17,6 +17,7 @@ export function answer(textures, queries) {
             f.upglow_outgoing_pdf(m, in_nm, out_nm),
             f.upglow_outgoing_elastic(m, in_nm),
             ...[came, left].flatMap((s) => [s.nm, s.throughput, s.pdf, s.elastic ? 1 : 0]),
+            [m.a, m.b, m.c, m.d].reduce((sum, corner) => sum + corner.weight * corner.node, 0),
         ];
         answers.set(row, 2 * q);
     }
