@@ -93,6 +93,13 @@ export class Cube {
         return labOf(xyz, this.white);
     }
 
+    // What looks under the cube's own light as XYZ do under another to eyes adapted to that: both are then
+    // the same on a screen.
+    asUnderOwnLight(xyz, light) {
+        const { to_xyz: toXyz } = this.meta.spaces.find(({ name }) => name === "sRGB");
+        return multiply(toXyz, multiply(light.screen.srgb, xyz));
+    }
+
     // All that charts show of a material of the cube.
     sample(material, label) {
         const f = this.functions;
