@@ -162,4 +162,12 @@ start().catch((error) => {
     throw error;
 });
 // For the console, and for tests.
-globalThis.explorer = { app, set, state };
+globalThis.explorer = {
+    app, set, state,
+    // XYZ of the material under each light, as the slider of ultraviolet leaves it.
+    colorsUnderLights() {
+        const { cube, sampled, below } = compute();
+        return Object.fromEntries(cube.lights.map((light) =>
+            [light.name, relit(sampled, light, state.uv, below)]));
+    },
+};
