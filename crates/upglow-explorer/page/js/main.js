@@ -60,6 +60,10 @@ const app = {
             }, (error) => app.say(error.message));
         }
     },
+    // Picks a color.
+    goTo(xyz) {
+        set({ value: app.spaceNow().from(xyz).map((v) => Number(v.toFixed(5))) });
+    },
     // Shows a material that is none of the cube's, until a color is picked.
     show(shown) {
         app.shown = shown;

@@ -46,3 +46,9 @@ export async function postFile(path, file) {
     const headers = { "content-type": "application/octet-stream" };
     return (await asked(path, { method: "POST", headers, body: file })).json();
 }
+
+// A material as the program sends it, as charts take it.
+export function sampledOf({ moved, passed, ...rest }) {
+    const bytes = moved ? Uint8Array.from(atob(moved), (letter) => letter.charCodeAt(0)) : null;
+    return { ...rest, passed: rest.fluoresces ? passed : null, moved: bytes && new Float32Array(bytes.buffer) };
+}
