@@ -15,10 +15,7 @@ const ALLOWED: [(&str, &[&str]); 13] = [
     ("upglow-shader", &["upglow", "upglow-color"]),
     ("upglow-fit", &["upglow", "upglow-color"]),
     ("upglow-image", &["upglow-fit", "upglow", "upglow-color"]),
-    (
-        "upglow-explorer",
-        &["upglow-image", "upglow-shader", "upglow-fit", "upglow", "upglow-color"],
-    ),
+    ("upglow-explorer", &["upglow-image", "upglow-shader", "upglow-fit", "upglow", "upglow-color"]),
     ("upglow-svg", &[]),
     ("upglow-terminal", &["upglow-fit", "upglow", "upglow-color"]),
     ("upglow-study", &["upglow-terminal", "upglow-svg", "upglow-fit", "upglow", "upglow-color"]),

@@ -17,7 +17,7 @@ use crate::lights::{ShownLight, ULTRAVIOLET_BELOW_NM, lights};
 /// The name of the shader's files, and of the metadata entry with what is no array.
 const NAME: &str = "explorer";
 
-/// RGB spaces that colors can be given in, besides the cube's own.
+/// RGB spaces that colors can be given in, with their usual spelling; the cube's own comes first.
 const SPACES: [(&str, &str); 3] = [("acescg", "ACEScg"), ("rec2020", "Rec.2020"), ("srgb", "sRGB")];
 
 /// Why a cube cannot be explored.
@@ -82,26 +82,32 @@ fn description(cube: &Cube, name: &str, lights: &[ShownLight]) -> Value {
     let contract = cube.contract();
     let colorimetry = contract.on(Grid::FIT);
     let dyes = cube.model().dyes().map_or(&[][..], |dyes| dyes.set().dyes());
-    let spaces = SPACES.map(|(space, label)| {
-        let space = RgbSpace::named(space).unwrap_or_default();
-        let contract = Contract { space, adaptation: Adaptation::Bradford, ..contract.clone() };
-        let colorimetry = contract.on(Grid::FIT);
-        json!({
-            "name": label,
-            "from_xyz": colorimetry.rgb_from_xyz_matrix().0,
-            "to_xyz": colorimetry.xyz_from_rgb_matrix().0,
+    let own = contract.space.name();
+    let label = |space: &str| SPACES.iter().find(|(name, _)| *name == space).map(|(_, label)| *label);
+    let others = SPACES.iter().map(|(space, _)| *space).filter(|space| *space != own);
+    let spaces: Vec<Value> = std::iter::once(contract.clone())
+        .chain(others.map(|space| Contract {
+            space: RgbSpace::named(space).unwrap_or_default(),
+            adaptation: Adaptation::Bradford,
+            ..contract.clone()
+        }))
+        .map(|contract| {
+            let colorimetry = contract.on(Grid::FIT);
+            let name = contract.space.name();
+            json!({
+                "name": label(name).unwrap_or(name),
+                "from_xyz": colorimetry.rgb_from_xyz_matrix().0,
+                "to_xyz": colorimetry.xyz_from_rgb_matrix().0,
+            })
         })
-    });
+        .collect();
     json!({
         "name": name,
         "version": env!("CARGO_PKG_VERSION"),
         "resolution": cube.resolution(),
         "model": cube.model().name(),
-        "space": contract.space.name(),
         "observer": contract.observer.name(),
         "white": colorimetry.white().0,
-        "xyz_from_rgb": colorimetry.xyz_from_rgb_matrix().0,
-        "rgb_from_xyz": colorimetry.rgb_from_xyz_matrix().0,
         "spaces": spaces,
         "dyes": dyes.iter().map(|dye| &dye.name).collect::<Vec<_>>(),
         "fit": cube.fit(),

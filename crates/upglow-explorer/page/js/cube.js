@@ -81,12 +81,13 @@ export class Cube {
         return [mixed(0), mixed(1), mixed(2)];
     }
 
+    // The first of the spaces is the cube's own.
     rgbOf(xyz) {
-        return multiply(this.meta.rgb_from_xyz, xyz);
+        return multiply(this.meta.spaces[0].from_xyz, xyz);
     }
 
     xyzOf(rgb) {
-        return multiply(this.meta.xyz_from_rgb, rgb);
+        return multiply(this.meta.spaces[0].to_xyz, rgb);
     }
 
     labOf(xyz) {

@@ -76,18 +76,19 @@ const app = {
     },
 };
 
-function facts({ name, space, lights, resolution, model, dyes, summary }) {
+function facts({ name, spaces, lights, resolution, model, dyes, summary }) {
     const kind = dyes.length > 0 ? `${model} of ${dyes.length} dyes` : model;
     const missed = summary.nodes - summary.within_1;
     const share = ((100 * missed) / summary.nodes).toFixed(missed > 0 ? 1 : 0);
-    return `${name}: ${space} under ${lights[0].name}, ${resolution}³ nodes, ${kind}; ${share} % miss their color by more than 1 ΔE00`;
+    return `${name}: ${spaces[0].name} under ${lights[0].name}, ${resolution}³ nodes, ${kind}; ${share} % miss their color by more than 1 ΔE00`;
 }
 
 // All that the views show of the state.
 function compute() {
     const { cube } = app;
     const target = app.spaceNow().to(state.value);
-    const rgb = cube.rgbOf(target);
+    // Numbers in the cube's own space stay exact, so that grays are.
+    const rgb = app.spaceNow() === app.spaces[0] ? state.value : cube.rgbOf(target);
     // Numbers of the fields have five decimals: corners of the cube are not outside by rounding.
     const inside = rgb.map((v) => Math.min(Math.max(v, 0), 1));
     const isOutside = rgb.some((v, k) => Math.abs(v - inside[k]) > 2e-5);

@@ -94,7 +94,7 @@ for (const way of ["served", "offline"]) {
                 }
                 return found;
             };
-            const glowing = await luminances([0.3, 0.95, 0.2]);
+            const glowing = await luminances([0.9, 0.1, 0.4]);
             assert.ok(glowing.every((y, k) => k === 0 || y >= glowing[k - 1]), String(glowing));
             assert.ok(glowing.at(-1) > glowing[0] + 1e-4, String(glowing));
             const gray = await luminances([0.5, 0.5, 0.5]);
