@@ -699,3 +699,57 @@ fn javascript_answers_what_the_library_answers() {
 fn osl_answers_what_the_library_answers() {
     check_language(Language::Osl, "osl_answers_what_the_library_answers");
 }
+
+/// Prints for each file what a module says to its content.
+const TRY_TEXTURES: &str = "\
+import { readFileSync } from 'node:fs';
+import { upglow } from './shader.js';
+for (const path of process.argv.slice(1)) {
+    try {
+        upglow(new Uint8Array(readFileSync(path)).buffer);
+        console.log('fits');
+    } catch (error) {
+        console.log(error.message);
+    }
+}
+";
+
+#[test]
+fn a_module_takes_no_textures_but_its_own() {
+    const TEST: &str = "a_module_takes_no_textures_but_its_own";
+    let Some(node) = node() else {
+        return println!("skipped: {TEST}, no node");
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, bytes: &[u8]| fs::write(folder.path().join(name), bytes).unwrap();
+    let cube = &cubes()[3];
+    let Shader { source, payload } = Shader::new(cube, Language::JavaScript, "shader").unwrap();
+    write("package.json", ES_MODULES.as_bytes());
+    write("shader.js", source.as_bytes());
+    let own = &payload[0].bytes;
+    let changed = |at: usize| {
+        let mut bytes = own.clone();
+        bytes[at] ^= 3;
+        bytes
+    };
+    let length = own.len();
+    let tries = [
+        (own.clone(), "fits".to_owned()),
+        (vec![], "shader.textures: expected a file that begins with UPGLOWTX".into()),
+        (changed(0), "shader.textures: expected a file that begins with UPGLOWTX".into()),
+        (changed(8), "shader.textures: version 2, expected 1".into()),
+        (own[..100].to_vec(), format!("shader.textures: 100 bytes, expected {length}")),
+        (changed(length - 1), "shader.textures: checksum ".into()),
+    ];
+    let names: Vec<String> = (0..tries.len()).map(|i| i.to_string()).collect();
+    names.iter().zip(&tries).for_each(|(name, (bytes, _))| write(name, bytes));
+    let mut command = Command::new(node);
+    command.args(["--input-type=module", "-e", TRY_TEXTURES]).args(&names);
+    let output = command.current_dir(folder.path()).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert_eq!(said.lines().count(), tries.len(), "{said}");
+    for (line, (_, expected)) in said.lines().zip(&tries) {
+        assert!(line.starts_with(expected), "{line}, expected {expected}");
+    }
+}
