@@ -1,4 +1,4 @@
-// What a corner adds to the reflectance under the dyes.
+// What a corner would reflect if it absorbed nothing for fluorescence.
 fn upglow_corner_base(c: UpglowCorner, nm: f32) -> f32 {
     let d: f32 = nm - c.edge_nm;
     let x: f32 = c.level + d * (c.rise + d * c.bend);
