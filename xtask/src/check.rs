@@ -5,7 +5,7 @@ use std::process::Command;
 use std::time::Instant;
 
 use crate::step::{Step, StepError, cargo, finish, finish_aloud, output_of};
-use crate::{c_library, guide, layers, mitsuba, python, python_wheel, tables, words};
+use crate::{c_library, explorer, guide, layers, mitsuba, python, python_wheel, tables, words};
 
 /// Set for the slow tests, so that they may take larger samples.
 const SLOW_VARIABLE: &str = "UPGLOW_SLOW";
@@ -34,7 +34,8 @@ const SLOW_STEP: Step =
 /// Every step; the slow one is the last.
 fn all_steps() -> Vec<Step> {
     let bindings = c_library::STEPS.into_iter().chain(python_wheel::STEPS).chain(mitsuba::STEPS);
-    STEPS.into_iter().chain(words::STEPS).chain(bindings).chain([SLOW_STEP]).collect()
+    let others = words::STEPS.into_iter().chain(explorer::STEPS).chain(bindings);
+    STEPS.into_iter().chain(others).chain([SLOW_STEP]).collect()
 }
 
 /// The steps and options that the command line names.

@@ -12,6 +12,7 @@ mod bench;
 mod c_library;
 mod check;
 mod count;
+mod explorer;
 mod guide;
 mod layers;
 mod llvm;

@@ -83,7 +83,8 @@ fn description(cube: &Cube, name: &str, lights: &[ShownLight]) -> Value {
     let colorimetry = contract.on(Grid::FIT);
     let dyes = cube.model().dyes().map_or(&[][..], |dyes| dyes.set().dyes());
     let own = contract.space.name();
-    let label = |space: &str| SPACES.iter().find(|(name, _)| *name == space).map(|(_, label)| *label);
+    let label =
+        |space: &str| SPACES.iter().find(|(name, _)| *name == space).map(|(_, label)| *label);
     let others = SPACES.iter().map(|(space, _)| *space).filter(|space| *space != own);
     let spaces: Vec<Value> = std::iter::once(contract.clone())
         .chain(others.map(|space| Contract {
