@@ -109,3 +109,44 @@ impl Direction {
         xyz_from_lab(lab, white)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_cube;
+
+    #[test]
+    fn kinds_are_ordered_and_black_and_white_have_no_color() {
+        let found = borders(&test_cube()).unwrap();
+        let at =
+            |kind: usize, row: usize, hue: usize| found[(kind * LIGHTNESSES + row) * HUES + hue];
+        for hue in 0..HUES {
+            for row in 0..LIGHTNESSES {
+                let [smooth, passive, any] = [0, 1, 2].map(|kind| at(kind, row, hue));
+                assert!(smooth <= passive && passive <= any, "{row} {hue}");
+            }
+            // Half a unit of chroma is the last halving.
+            assert!(at(1, 0, hue) <= 0.5 && at(1, LIGHTNESSES - 1, hue) <= 0.5, "{hue}");
+            // The solid of fluorescent materials goes on above white.
+            assert!(at(2, LIGHTNESSES - 1, hue) > 1.0, "{hue}");
+        }
+    }
+
+    #[test]
+    fn a_border_divides_what_is_within_reach_from_what_is_not() {
+        let cube = test_cube();
+        let found = borders(&cube).unwrap();
+        let colorimetry = cube.contract().on(Grid::FIT);
+        let solids = ColorSolids::new(&colorimetry);
+        for index in (0..LIGHTNESSES * HUES).step_by(61) {
+            let direction = Direction::new(index);
+            for (solid, kind) in [(&solids.reflectance, 1), (&solids.fluorescence, 2)] {
+                let chroma = f64::from(found[kind * LIGHTNESSES * HUES + index]);
+                let contains =
+                    |chroma| solid.contains(direction.color(chroma, colorimetry.white()));
+                // Halvings end within half a unit.
+                assert!(contains(chroma) && !contains(chroma + 0.51), "{kind} {index} {chroma}");
+            }
+        }
+    }
+}

@@ -200,3 +200,44 @@ impl View for &Tensor {
         self.bytes.len()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_cube;
+    use safetensors::SafeTensors;
+
+    #[test]
+    fn nodes_have_the_colors_that_the_library_mixes() {
+        let cube = test_cube();
+        let CubeData { arrays, .. } = CubeData::new(&cube, "name").unwrap();
+        let tensors = SafeTensors::deserialize(&arrays).unwrap();
+        let nodes = tensors.tensor("node_xyz").unwrap();
+        let colorimetry = cube.contract().on(Grid::FIT);
+        for (index, bytes) in nodes.data().chunks_exact(12).enumerate() {
+            let mut color = [[0.0; 3]];
+            let rgb = cube.node_rgb(index).0.map(upglow_color::rounding::to_single);
+            cube.color_table(&colorimetry).xyz(&[rgb], &mut color).unwrap();
+            for (found, expected) in bytes.as_chunks::<4>().0.iter().zip(color[0]) {
+                // Single precision of sums below 2.
+                assert!((f32::from_le_bytes(*found) - expected).abs() < 1e-6, "{index}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_cube_in_another_space_names_it_first() {
+        let contract =
+            Contract { space: RgbSpace::named("p3-d65").unwrap(), ..Contract::default() };
+        let nodes = vec![upglow::Node::default(); 8];
+        let fit = upglow::FitRecord::default();
+        let cube = Cube::new(contract, upglow::Model::Reflectance, fit, 2, nodes).unwrap();
+        let lights = lights(cube.contract());
+        let shown: Vec<_> =
+            lights.iter().map(|light| ShownLight::new(cube.contract(), light)).collect();
+        let names = description(&cube, "", &shown)["spaces"].clone();
+        let names: Vec<&str> =
+            names.as_array().unwrap().iter().filter_map(|space| space["name"].as_str()).collect();
+        assert_eq!(names, ["p3-d65", "ACEScg", "Rec.2020", "sRGB"]);
+    }
+}

@@ -16,3 +16,12 @@ mod page;
 
 pub use cube_data::{CubeData, ExplorerError};
 pub use page::offline_page;
+
+/// A small cube of the default preset.
+#[cfg(test)]
+fn test_cube() -> upglow::Cube {
+    let preset = upglow_fit::Preset::default();
+    let contract = upglow_color::Contract::default();
+    upglow_fit::build_cube(&contract, &preset.model(), preset.options(), 4, &upglow_fit::Unwatched)
+        .expect("the preset is valid")
+}

@@ -72,3 +72,48 @@ fn in_one_scope(module: &str) -> String {
     }
     text
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_cube;
+
+    #[test]
+    fn the_page_names_no_other_address() {
+        let page = offline_page(&test_cube(), "a cube").unwrap();
+        let rest = page.replace("http://www.w3.org/2000/svg", "");
+        for word in ["http:", "https:", "//cdn", "src=", "@import", "url("] {
+            assert!(!rest.contains(word), "{word}");
+        }
+        assert!(page.contains("id=\"cube-arrays\"") && !page.contains("/*SCRIPT*/"));
+    }
+
+    #[test]
+    fn imports_name_files_that_come_before() {
+        let names = include_str!("page.rs").lines().filter_map(|line| {
+            line.trim().strip_prefix("include_str!(\"../page/js/")?.strip_suffix("\"),")
+        });
+        let names: Vec<&str> = names.collect();
+        assert_eq!(names.len(), SCRIPTS.len());
+        for (k, script) in SCRIPTS.iter().enumerate() {
+            for line in script.lines().filter(|line| line.starts_with("import ")) {
+                let file = line.rsplit('/').next().and_then(|name| name.strip_suffix("\";"));
+                let place = names.iter().position(|name| Some(*name) == file);
+                assert!(place.is_some_and(|place| place < k), "{}: {line}", names[k]);
+            }
+        }
+    }
+
+    #[test]
+    fn a_module_becomes_part_of_one_script() {
+        let module =
+            "import { a } from \"./a.js\";\n\nexport const b = a;\nexport function c() {}\n";
+        assert_eq!(in_one_scope(module), "\nconst b = a;\nfunction c() {}\n");
+    }
+
+    #[test]
+    fn names_of_files_cannot_become_markup() {
+        let page = offline_page(&test_cube(), "</script><script>alert(1)</script>").unwrap();
+        assert!(!page.contains("alert(1)"));
+    }
+}
