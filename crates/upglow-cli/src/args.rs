@@ -1,6 +1,8 @@
 //! The command line: each option is one field here, with its name, value, default and help.
 
 mod build;
+#[cfg(feature = "explore")]
+mod explore;
 mod pictures;
 mod values;
 
@@ -16,6 +18,8 @@ use upglow_terminal::{Console, Threads, count, in_range, word};
 pub(crate) use build::{
     BuildArgs, ContractArgs, FitArgs, ModelArgs, ModelName, SlopeLimits, limit_text,
 };
+#[cfg(feature = "explore")]
+pub(crate) use explore::{BuildWords, ExploreArgs};
 pub(crate) use pictures::{
     BakeArgs, BakeForm, BakeFormat, CheckArgs, ExamplesArgs, LintArgs, ReadArgs, SampleName,
 };
@@ -54,6 +58,9 @@ pub(crate) enum Command {
     Read(ReadArgs),
     /// Report whether files are well-formed spectral or bispectral EXR; exit with 1 if one is not
     Lint(LintArgs),
+    /// Explore a cube in a browser: pick colors, see their spectra, light them, build other cubes
+    #[cfg(feature = "explore")]
+    Explore(ExploreArgs),
     /// Draw example pictures to try the other commands on
     Examples(ExamplesArgs),
     /// Moved to the program `upglow-study`

@@ -25,12 +25,18 @@ pub(crate) struct BuildPlan {
 impl BuildPlan {
     /// Checks everything that can be checked before the work starts; the output last.
     pub(crate) fn new(args: &BuildArgs) -> Result<Self, Failure> {
+        let plan = Self::without_output(args)?;
+        files::check_ending(&args.output, files::CUBE)?;
+        files::check_output(&args.output)?;
+        Ok(plan)
+    }
+
+    /// Checks everything but the output.
+    pub(crate) fn without_output(args: &BuildArgs) -> Result<Self, Failure> {
         let contract = contract(&args.contract)?;
         let model = model(args)?;
         let options = options(args.model.preset, &args.fit);
         options.check(&model).map_err(|error| options_failure(error, &options))?;
-        files::check_ending(&args.output, files::CUBE)?;
-        files::check_output(&args.output)?;
         Ok(Self { contract, model, options })
     }
 }

@@ -1,5 +1,7 @@
 //! Which kind of material can reach a color. The only test of reachability in the workspace.
 
+use std::fmt;
+
 use crate::color_solid::{ColorSolid, Nearest};
 use crate::colorimetry::Colorimetry;
 use crate::values::Xyz;
@@ -49,6 +51,21 @@ impl Standing {
         match self.kind {
             StandingKind::Reflectance | StandingKind::NeedsFluorescence => self.reflectance,
             StandingKind::Unreachable => self.fluorescence,
+        }
+    }
+}
+
+/// What reaches the color, after "reachable": "by a reflectance".
+impl fmt::Display for Standing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Nearest { distance, de2000, .. } = self.beyond();
+        let off = format_args!("{distance:.4} away in XYZ, ΔE00 {de2000:.2}");
+        match self.kind {
+            StandingKind::Reflectance => f.write_str("by a reflectance"),
+            StandingKind::NeedsFluorescence => {
+                write!(f, "only with fluorescence: the nearest reflectance is {off}")
+            }
+            StandingKind::Unreachable => write!(f, "by no material: the nearest is {off}"),
         }
     }
 }

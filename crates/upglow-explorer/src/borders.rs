@@ -38,6 +38,12 @@ pub(crate) fn passive_fitter(
     Fitter::new(contract, &Model::Reflectance, options)
 }
 
+/// The contract in a space in which all real colors have components above 0, which fits need.
+pub(crate) fn all_colors(contract: &Contract) -> Contract {
+    let space = RgbSpace::named("aces2065-1").unwrap_or_default();
+    Contract { space, ..contract.clone() }
+}
+
 /// Greatest C* of each kind of material, `[kind][lightness][hue]`.
 ///
 /// The search assumes that along a hue every color short of the border is within reach, as it is for
@@ -47,9 +53,7 @@ pub(crate) fn passive_fitter(
 ///
 /// [`FitOptionsError`] if the cube's slope limit is out of range.
 pub(crate) fn borders(cube: &Cube) -> Result<Vec<f32>, FitOptionsError> {
-    // All real colors have components above 0 in this space, which fits need.
-    let space = RgbSpace::named("aces2065-1").unwrap_or_default();
-    let contract = Contract { space, ..cube.contract().clone() };
+    let contract = all_colors(cube.contract());
     let colorimetry = contract.on(Grid::FIT);
     let solids = ColorSolids::new(&colorimetry);
     let fitter = passive_fitter(&contract, cube.fit().slope_max_per_nm)?;

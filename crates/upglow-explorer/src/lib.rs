@@ -6,6 +6,7 @@
 //!
 //! - one file that needs no program: [`offline_page`]
 //! - what the page knows of a cube: [`CubeData`]
+//! - with the feature `server`, the page with what needs the fitter or a file reader: `Server`
 //!
 //! Out of scope: reading cubes, opening a browser.
 
@@ -13,9 +14,15 @@ mod borders;
 mod cube_data;
 mod lights;
 mod page;
+#[cfg(feature = "server")]
+mod sampled;
+#[cfg(feature = "server")]
+mod server;
 
 pub use cube_data::{CubeData, ExplorerError};
 pub use page::offline_page;
+#[cfg(feature = "server")]
+pub use server::{BuildOption, Plan, PlanOf, Planner, Server, ServerError};
 
 /// A small cube of the default preset.
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Failures of a program: one line on standard error and an exit status.
 
 use std::error::Error;
-use std::fmt::Display;
+use std::fmt::{self, Display};
 use std::io;
 use std::path::Path;
 use std::process::ExitCode;
@@ -66,14 +66,25 @@ impl Failure {
 
     /// Prints the line and returns the exit status.
     pub(crate) fn report(&self, program: &str) -> ExitCode {
-        let (line, status) = match self {
-            Self::Input(line) => (line.as_str(), INPUT_STATUS),
-            Self::Usage(line) => (line.as_str(), USAGE_STATUS),
-            Self::Stopped => ("stopped, nothing was written", STOPPED_STATUS),
+        let status = match self {
+            Self::Input(_) => INPUT_STATUS,
+            Self::Usage(_) => USAGE_STATUS,
+            Self::Stopped => STOPPED_STATUS,
             Self::OutputClosed => return ExitCode::SUCCESS,
         };
-        eprintln!("{program}: {}", one_line(line));
+        eprintln!("{program}: {self}");
         ExitCode::from(status)
+    }
+}
+
+/// The line that programs print, without their name.
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Input(line) | Self::Usage(line) => f.write_str(&one_line(line)),
+            Self::Stopped => f.write_str("stopped, nothing was written"),
+            Self::OutputClosed => f.write_str("the reader of standard output has closed it"),
+        }
     }
 }
 
@@ -127,7 +138,7 @@ pub(crate) fn report_usage(program: &str, error: &clap::Error) -> ExitCode {
 }
 
 /// The option and the cause of its error; for other errors the first paragraph and the tips.
-fn usage_line(error: &clap::Error) -> String {
+pub(crate) fn usage_line(error: &clap::Error) -> String {
     if let (Some(ContextValue::String(option)), Some(cause)) =
         (error.get(ContextKind::InvalidArg), error.source())
     {

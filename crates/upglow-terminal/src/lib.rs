@@ -16,8 +16,17 @@ use clap::Parser;
 
 pub use failure::Failure;
 pub use output::{Console, Report, size};
-pub use progress::{Bar, Threads, check_stopped};
+pub use progress::{Bar, Threads, catch_stops, check_stopped};
 pub use values::{count, in_range, number, parsed, word};
+
+/// Reads the words of a command line that nobody typed.
+///
+/// # Errors
+///
+/// [`Failure::Usage`] with the line that the program prints of such a command line.
+pub fn parse<Args: Parser>(words: impl IntoIterator<Item = String>) -> Result<Args, Failure> {
+    Args::try_parse_from(words).map_err(|error| Failure::Usage(failure::usage_line(&error)))
+}
 
 /// Reads the command line, runs `work` with it, and returns the exit status.
 ///

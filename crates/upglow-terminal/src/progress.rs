@@ -69,9 +69,7 @@ impl Bar {
         let bar = ProgressBar::with_draw_target(Some(1), target)
             .with_style(style())
             .with_message("starting");
-        // Setting the handler fails for every call but the first. Without a handler Ctrl-C ends the
-        // program at once, which leaves no unfinished file either.
-        let _ = ctrlc::set_handler(|| STOPPED.store(true, Ordering::Relaxed));
+        catch_stops();
         Self { bar, stage: Mutex::new("") }
     }
 }
@@ -79,6 +77,13 @@ impl Bar {
 fn style() -> ProgressStyle {
     ProgressStyle::with_template("{msg} {wide_bar} {percent:>3}%  {elapsed} so far, {eta} left")
         .unwrap_or_else(|_| ProgressStyle::default_bar())
+}
+
+/// Lets [`check_stopped`] know of Ctrl-C and termination, which then no longer end the program.
+pub fn catch_stops() {
+    // Setting the handler fails for every call but the first. Without a handler Ctrl-C ends the
+    // program at once, which leaves no unfinished file either.
+    let _ = ctrlc::set_handler(|| STOPPED.store(true, Ordering::Relaxed));
 }
 
 /// Returns an error after Ctrl-C.

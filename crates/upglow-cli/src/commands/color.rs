@@ -2,13 +2,13 @@
 
 use upglow::{Cube, Interpolation, Mixture, ModelOnGrid};
 use upglow_color::{
-    Adaptation, ColorSolids, Colorimetry, Contract, Grid, Illuminant, LinearRgb, Metric, Nearest,
-    RgbSpace, StandingKind, Xyz,
+    Adaptation, ColorSolids, Colorimetry, Contract, Grid, Illuminant, LinearRgb, Metric, RgbSpace,
+    Xyz,
 };
 use upglow_fit::{FitOptions, Fitter, MaterialKind};
 use upglow_terminal::{Console, Failure};
 
-use super::color_report::{ColorReport, LightReport, PartReport, StandingReport};
+use super::color_report::{ColorReport, LightReport, PartReport};
 use crate::args::ColorArgs;
 use crate::plot::{Curves, Figure, Swatch, svg};
 use crate::{files, plan};
@@ -100,6 +100,7 @@ impl<'a> Shown<'a> {
 
     fn report(&'a self, args: &ColorArgs) -> ColorReport<'a> {
         let Contract { space, illuminant, adaptation, .. } = self.cube.contract();
+        let standing = ColorSolids::new(&self.colorimetry).standing(self.target);
         ColorReport {
             file: args.file.display().to_string(),
             rgb_space: space.name(),
@@ -108,7 +109,8 @@ impl<'a> Shown<'a> {
             interpolation: self.interpolation,
             de2000: self.de2000(self.color),
             kind: self.kind(),
-            standing: self.standing(),
+            standing: standing.into(),
+            reachable: standing,
             parts: self.parts(),
             illuminant: illuminant.name(),
             adaptation: *adaptation,
@@ -124,22 +126,6 @@ impl<'a> Shown<'a> {
 
     fn parts(&self) -> Vec<PartReport<'_>> {
         self.mixture.parts().map(|part| PartReport::new(part, self.cube.model())).collect()
-    }
-
-    fn standing(&self) -> StandingReport {
-        let standing = ColorSolids::new(&self.colorimetry).standing(self.target);
-        let Nearest { distance, de2000, .. } = standing.beyond();
-        match standing.kind {
-            StandingKind::Reflectance => StandingReport::Reflectance,
-            StandingKind::NeedsFluorescence => StandingReport::NeedsFluorescence {
-                reflectance_distance_xyz: distance,
-                reflectance_de2000: de2000,
-            },
-            StandingKind::Unreachable => StandingReport::Unreachable {
-                fluorescence_distance_xyz: distance,
-                fluorescence_de2000: de2000,
-            },
-        }
     }
 
     /// The color of the material under the cube's own light and the others.

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 use upglow::{Features, Fluorescence, Interpolation, Material, Model, Sigmoid, Vertex};
-use upglow_color::{Adaptation, LinearRgb, Xyz};
+use upglow_color::{Adaptation, LinearRgb, Nearest, Standing, StandingKind, Xyz};
 use upglow_fit::{CubeSummary, MaterialKind};
 use upglow_terminal::Report;
 
@@ -25,6 +25,8 @@ pub(crate) struct ColorReport<'a> {
     pub(crate) de2000: f64,
     pub(crate) kind: MaterialKind,
     pub(crate) standing: StandingReport,
+    #[serde(skip)]
+    pub(crate) reachable: Standing,
     pub(crate) parts: Vec<PartReport<'a>>,
     pub(crate) illuminant: &'a str,
     pub(crate) adaptation: Adaptation,
@@ -147,16 +149,19 @@ impl<'a> FluorescenceReport<'a> {
     }
 }
 
-impl StandingReport {
-    fn text(&self) -> String {
-        match self {
-            Self::Reflectance => "by a reflectance".into(),
-            Self::NeedsFluorescence { reflectance_distance_xyz, reflectance_de2000 } => format!(
-                "only with fluorescence: the nearest reflectance is {reflectance_distance_xyz:.4} away in XYZ, ΔE00 {reflectance_de2000:.2}"
-            ),
-            Self::Unreachable { fluorescence_distance_xyz, fluorescence_de2000 } => format!(
-                "by no material: the nearest is {fluorescence_distance_xyz:.4} away in XYZ, ΔE00 {fluorescence_de2000:.2}"
-            ),
+impl From<Standing> for StandingReport {
+    fn from(standing: Standing) -> Self {
+        let Nearest { distance, de2000, .. } = standing.beyond();
+        match standing.kind {
+            StandingKind::Reflectance => Self::Reflectance,
+            StandingKind::NeedsFluorescence => Self::NeedsFluorescence {
+                reflectance_distance_xyz: distance,
+                reflectance_de2000: de2000,
+            },
+            StandingKind::Unreachable => Self::Unreachable {
+                fluorescence_distance_xyz: distance,
+                fluorescence_de2000: de2000,
+            },
         }
     }
 }
@@ -185,7 +190,7 @@ impl ColorReport<'_> {
         let mut lines = Lines::default();
         lines
             .add("color", format_args!("{} ({r}, {g}, {b})", self.rgb_space))
-            .add("reachable", self.standing.text())
+            .add("reachable", self.reachable)
             .add("material", material)
             .add("kind", self.kind_text())
             .add("ΔE00", format_args!("{:.4}{remark}", self.de2000));

@@ -6,6 +6,8 @@ mod check;
 mod color;
 mod color_report;
 mod examples;
+#[cfg(feature = "explore")]
+mod explore;
 mod export;
 mod inspect;
 mod inspect_table;
@@ -30,6 +32,8 @@ pub(crate) fn run(Args { command, console }: Args) -> Result<(), Failure> {
         Command::Check(args) => check::run(&args, &console),
         Command::Read(args) => read::run(&args, &console),
         Command::Lint(args) => lint::run(&args, &console),
+        #[cfg(feature = "explore")]
+        Command::Explore(args) => explore::run(&args, &console),
         Command::Examples(args) => examples::run(&args, &console),
         Command::Figures(_) => Err(moved("figures")),
         Command::Reproduce(_) => Err(moved("reproduce")),

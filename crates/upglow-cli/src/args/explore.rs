@@ -1,0 +1,30 @@
+//! The options of `upglow explore`.
+
+use std::path::PathBuf;
+
+use clap::Parser;
+use upglow_terminal::{Threads, count};
+
+use super::build::BuildArgs;
+
+#[derive(Clone, Debug, clap::Args)]
+pub(crate) struct ExploreArgs {
+    /// Cube made by `upglow build` [default: one with the default options of `upglow build`]
+    pub(crate) cube: Option<PathBuf>,
+    /// Port of this machine that the page is at [default: any free one]
+    #[arg(long, default_value = "0", hide_default_value = true, value_name = "N", value_parser = count::<u16>)]
+    pub(crate) port: u16,
+    /// Only print the address of the page, do not open a browser
+    #[arg(long)]
+    pub(crate) no_open: bool,
+    #[command(flatten)]
+    pub(crate) threads: Threads,
+}
+
+/// The options of a build that come from the page.
+#[derive(Clone, Debug, Parser)]
+#[command(name = "upglow build", disable_help_flag = true)]
+pub(crate) struct BuildWords {
+    #[command(flatten)]
+    pub(crate) build: BuildArgs,
+}
