@@ -410,7 +410,7 @@ fn options_that_do_not_fit() {
         ("read material.exr --at -1,0", "--at: \"-1\", expected two whole numbers X,Y"),
         ("read material.exr --at 2,0", "--at: 2,0 is outside the picture, expected 0,0 to 1,1"),
         ("lint", "the following required arguments were not provided: <FILE>"),
-        ("export cube x.txt", "--format: not given, expected one of csv, coeff, wgsl"),
+        ("export cube x.txt", "--format: not given, expected one of csv, coeff, html, wgsl"),
         (
             "export cube x.coeff --resolution 500",
             "--resolution: 500, expected a whole number from 2",

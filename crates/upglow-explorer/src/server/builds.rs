@@ -105,13 +105,13 @@ impl Job {
         self.status().started = Instant::now();
         let Plan { contract, model, options, resolution } = &self.plan;
         let built = pool.install(|| build_cube(contract, model, *options, *resolution, self));
-        let held = built.map_err(|error| match error {
+        let built = built.map_err(|error| match error {
             BuildError::Stopped => State::Stopped,
             error => State::Failed(error.to_string()),
         });
-        self.progress(Progress { stage: "preparing the page", done: 0, total: 1 });
-        let name = format!("build {}", self.id);
-        let held = held.and_then(|cube| {
+        let held = built.and_then(|cube| {
+            self.progress(Progress { stage: "preparing the page", done: 0, total: 1 });
+            let name = format!("build {}", self.id);
             let held = pool.install(|| Held::new(self.id, cube, &name));
             held.map_err(|error| State::Failed(error.to_string()))
         });

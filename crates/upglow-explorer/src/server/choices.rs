@@ -26,6 +26,13 @@ pub(super) fn built_in() -> Value {
     })
 }
 
+/// The name that a set is called by; files keep a former one.
+fn name_of(set: &DyeSet) -> &str {
+    let is_same =
+        |name: &&str| MeasuredDye::set(name).is_some_and(|(stored, _)| stored == set.name());
+    MeasuredDye::set_names().find(is_same).unwrap_or(set.name())
+}
+
 /// A model and options of a fit by the options of the command line that give them.
 pub(super) fn options_of(model: &Model, fit: &FitOptions) -> BTreeMap<&'static str, String> {
     let limit = |limit: Option<f64>| limit.map_or("none".into(), |limit| limit.to_string());
@@ -45,7 +52,7 @@ pub(super) fn options_of(model: &Model, fit: &FitOptions) -> BTreeMap<&'static s
     let quantum_yield = model.quantum_yield().map(|quantum_yield| quantum_yield.to_string());
     options.extend(quantum_yield.map(|quantum_yield| ("--quantum-yield", quantum_yield)));
     if let Some(dyes) = model.dyes() {
-        options.insert("--dyes", dyes.set().name().into());
+        options.insert("--dyes", name_of(dyes.set()).into());
     }
     match model {
         Model::Dyes(dyes) => {

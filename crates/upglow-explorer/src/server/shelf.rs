@@ -67,10 +67,6 @@ impl Shelf {
         Self { first: Arc::new(first), built: Mutex::default() }
     }
 
-    pub(super) fn first(&self) -> &Held {
-        &self.first
-    }
-
     /// All cubes, the newest last.
     pub(super) fn all(&self) -> Vec<Arc<Held>> {
         let built = self.built.lock().unwrap_or_else(PoisonError::into_inner);
