@@ -1,7 +1,7 @@
 //! `cargo xtask count`: how large the project is, by the numbers that a change can be held to.
 //!
-//! A source line is one of Rust, Python, C, C++, GLSL, HLSL, OSL or WGSL that holds more than space
-//! and comment. Left out: tests (folders `tests`, files `tests.rs`, modules under `#[cfg(test)]`),
+//! A source line is one of Rust, Python, C, C++, JavaScript, CSS, HTML, GLSL, HLSL, OSL or WGSL that
+//! holds more than space and comment. Left out: tests (folders `tests`, files `tests.rs`, modules under `#[cfg(test)]`),
 //! benches and examples, documentation (comments, docstrings), and what is generated (the measured
 //! tables, the C header).
 
@@ -11,10 +11,11 @@ use std::path::{Path, PathBuf};
 use crate::step::{StepError, cargo, output_of, read, tracked_files};
 
 /// Comments by line, and languages by the ends of their files' names.
-const LANGUAGES: [(&str, &str, &[&str]); 4] = [
+const LANGUAGES: [(&str, &str, &[&str]); 5] = [
     ("Rust", "//", &["rs"]),
     ("Python", "#", &["py", "pyi"]),
     ("C, C++", "//", &["c", "h", "cpp"]),
+    ("JavaScript, CSS, HTML", "//", &["js", "mjs", "css", "html"]),
     ("shaders", "//", &["wgsl", "glsl", "hlsl", "osl"]),
 ];
 
