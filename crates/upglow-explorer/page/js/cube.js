@@ -200,7 +200,7 @@ function responseOf(material, f, matching) {
 }
 
 // The share of a light's wavelength that is left by the slider of ultraviolet.
-function kept(nm, uv, below) {
+export function kept(nm, uv, below) {
     if (uv === "only") {
         return nm < below ? 1 : 0;
     }
@@ -224,23 +224,39 @@ export function relit(sampled, light, uv, below) {
     return xyz;
 }
 
-// Light that leaves over light that arrives, by 5 nm; 0 where none arrives. The part of fluorescence is
-// given apart.
+// A radiance factor is a ratio without meaning where less of a light's peak than this arrives.
+const LEAST_POWER = 1e-3;
+
+// Light that leaves over light that arrives, in bands of 5 nm, NaN where none arrives: the whole (total) and
+// the part of fluorescence (moved). leaving: the light that leaves, over the peak of the light. Lights with
+// lines are averaged over each band: a sample would hit a line or miss it.
 export function radianceFactor(sampled, light, uv, below) {
     const total = new Float64Array(COARSE);
     const moved = new Float64Array(COARSE);
-    const power = Array.from({ length: COARSE }, (_, i) =>
-        light.power[STEP_NM * i] * kept(FIRST_NM + STEP_NM * i, uv, below));
+    const leaving = new Float64Array(COARSE);
+    const power = Float64Array.from({ length: COARSE }, (_, i) => bandPower(light.power, STEP_NM * i, uv, below));
     for (let o = 0; o < COARSE; o += 1) {
-        if (power[o] > 0) {
-            if (sampled.moved) {
-                for (let i = 0; i < COARSE; i += 1) {
-                    moved[o] += STEP_NM * power[i] * sampled.moved[i * COARSE + o];
-                }
+        let sent = 0;
+        if (sampled.moved) {
+            for (let i = 0; i < COARSE; i += 1) {
+                sent += STEP_NM * power[i] * sampled.moved[i * COARSE + o];
             }
-            moved[o] /= power[o];
-            total[o] = sampled.reflectance[STEP_NM * o] + moved[o];
         }
+        leaving[o] = sampled.reflectance[STEP_NM * o] * power[o] + sent;
+        moved[o] = power[o] > LEAST_POWER ? sent / power[o] : NaN;
+        total[o] = sampled.reflectance[STEP_NM * o] + moved[o];
     }
-    return { total, moved };
+    return { total, moved, leaving };
+}
+
+// The mean power of a light in the band of 5 nm around a sample.
+function bandPower(power, middle, uv, below) {
+    const half = (STEP_NM - 1) / 2;
+    let sum = 0;
+    let count = 0;
+    for (let i = Math.max(middle - half, 0); i <= Math.min(middle + half, FINE - 1); i += 1) {
+        sum += power[i] * kept(FIRST_NM + i, uv, below);
+        count += 1;
+    }
+    return sum / count;
 }

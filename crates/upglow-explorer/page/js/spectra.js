@@ -1,3 +1,422 @@
-export function makeSpectra() {
-    return { draw() {} };
+// The spectra of the material: what it reflects, absorbs and sends out, and the light it is in.
+
+import { multiply, SCREEN, cssColor } from "./color.js";
+import { state } from "./state.js";
+import { COARSE, FINE, FIRST_NM, STEP_NM, kept, radianceFactor } from "./cube.js";
+import { element, svgElement } from "./dom.js";
+import { WaveChart, csvOf, download, px, standaloneSvg, steppedTop } from "./chart.js";
+
+// The switches: what is drawn, how it is called in the list and at its line.
+const CURVES = [
+    { key: "total", name: "Total", label: "total radiance factor" },
+    { key: "reflectance", name: "Reflectance", label: "reflectance" },
+    { key: "base", name: "Base", label: "base reflectance, without absorption" },
+    { key: "slope", name: "Steepest slope", label: "" },
+    { key: "passed", name: "Film lets through", label: "what the film lets through" },
+    { key: "absorbed", name: "Dyes absorb", label: "" },
+    { key: "emitted", name: "Dyes emit", label: "emission" },
+    { key: "light", name: "Light", label: "light" },
+    { key: "leaving", name: "Light leaving", label: "light leaving" },
+    { key: "before", name: "Cube before", label: "before" },
+];
+// Emission of this much per nanometer is drawn at 1, so that emission of common dyes fills half the chart.
+const EMISSION_AT_1 = 0.04;
+// Dyes of smaller doses are drawn fainter: a blend of nodes often has traces of some.
+const FULL_DOSE = 0.05;
+// Dyes that have a row of their own under the chart; the others share the row below.
+const DYE_ROWS = 3;
+// The axis ends at what is seen: at its ends a light may be so dim that any emission exceeds it.
+const SEEN_NM = [390, 730];
+
+const atNm = (nm) => nm - FIRST_NM;
+const written = (value, digits = 3) => (Number.isNaN(value) || value === null ? "–" : value.toFixed(digits));
+
+export function makeSpectra(root, app) {
+    // What the user switched; light that leaves is shown by itself only where radiance factors say little.
+    const chosen = new Map();
+    const isOn = (key) => chosen.get(key) ?? (key !== "leaving" || Boolean(shown?.isDark));
+    let shown = null;
+
+    const chart = new WaveChart({
+        label: "Spectra by wavelength; arrow keys move, with Shift faster",
+        title: { id: "spectra", text: "radiance factor (total: by 5 nm)" },
+        heightOf: (width) => Math.round(Math.min(Math.max(0.54 * width, 272), 420)),
+        colors: spectralColors(app.now.cube),
+        onCursor: readOut,
+        onSize: () => shown && drawLines(),
+    });
+    const over = chart.plot.appendChild(svgElement("path", { class: "over" }));
+    const lines = new Map();
+    const dyeLayer = svgElement("g");
+    for (const key of ["light", "leaving"]) {
+        lines.set(key, chart.plot.appendChild(svgElement("path", { class: `curve ${key}` })));
+    }
+    chart.plot.append(dyeLayer);
+    for (const key of ["passed", "base", "before-reflectance", "before-total", "total", "reflectance", "slope"]) {
+        lines.set(key, chart.plot.appendChild(svgElement("path", { class: `curve ${key}` })));
+    }
+    const oneLine = chart.marks.appendChild(svgElement("path", { class: "one" }));
+    const oneText = chart.marks.appendChild(svgElement("text", { class: "tick end" }, "1: as much as arrives"));
+
+    const keys = element("div", { class: "keys", role: "group", "aria-label": "Lines shown" });
+    const values = new Map();
+    const buttons = new Map(CURVES.map(({ key, name, label }) => {
+        const value = element("span", { class: "value", "aria-hidden": "true" });
+        const sample = svgElement("svg", { viewBox: "0 0 20 8", class: "sample", "aria-hidden": "true" },
+            svgElement("path", { d: "M0 4H20", class: `curve ${key}` }));
+        const button = element("button", { type: "button", title: label }, sample, name, value);
+        button.addEventListener("click", () => {
+            chosen.set(key, !isOn(key));
+            drawLines();
+        });
+        values.set(key, value);
+        keys.append(button);
+        return [key, button];
+    }));
+
+    const table = makeDyeTable();
+    const csv = element("button", { type: "button" }, "CSV");
+    csv.setAttribute("aria-label", "Save the spectra as CSV");
+    csv.addEventListener("click", () => download(`${fileName()}.csv`, "text/csv", asCsv()));
+    const svg = element("button", { type: "button" }, "SVG");
+    svg.setAttribute("aria-label", "Save the chart as SVG");
+    svg.addEventListener("click", () => {
+        const { space, value } = state;
+        const title = `Spectra of ${space} ${value.join(", ")} under ${shown.light.name}`;
+        download(`${fileName()}.svg`, "image/svg+xml", standaloneSvg(chart.svg, title));
+    });
+    root.append(element("div", { class: "head" }, root.querySelector("h2"), csv, svg), chart.root, keys, table.root);
+
+    const fileName = () => ["spectra", state.space, ...state.value, shown.light.name].join("-")
+        .replaceAll(/[^A-Za-z0-9.-]+/g, "_");
+
+    // All lines that are drawn: values from 300 nm by steps.
+    function curves() {
+        const { sampled, factor, power, before } = shown;
+        const list = [
+            { key: "total", values: factor.total, stepNm: STEP_NM },
+            { key: "reflectance", values: sampled.reflectance },
+        ];
+        if (sampled.fluoresces) {
+            list.push({ key: "base", values: sampled.base });
+            list.push({ key: "passed", values: sampled.passed });
+        }
+        list.push({ key: "leaving", values: factor.leaving, stepNm: STEP_NM });
+        list.push({ key: "light", values: power });
+        if (before) {
+            list.push({ key: "before", line: "before-total", values: before.total, stepNm: STEP_NM });
+            list.push({ key: "before", line: "before-reflectance", values: before.reflectance });
+        }
+        return list.filter(({ key, values: v }) => v && isOn(key));
+    }
+
+    function drawLines() {
+        for (const [key, button] of buttons) {
+            button.setAttribute("aria-pressed", String(isOn(key)));
+            button.classList.toggle("absent", shown.absent.has(key));
+        }
+        buttons.get("before").hidden = !shown.before;
+        const drawn = curves();
+        const peak = Math.max(...drawn.filter(({ key }) => key === "total" || key === "before")
+            .map(({ values: v, stepNm = 1 }) => peakSeen(v, stepNm)), 0);
+        chart.setTop(steppedTop(peak, chart.top, 1));
+        if (chart.width === 0) {
+            return;
+        }
+        const byLine = new Map(drawn.map((curve) => [curve.line ?? curve.key, curve]));
+        for (const [name, path] of lines) {
+            const curve = byLine.get(name);
+            // Lines of light may be a nanometer wide; all else is smooth.
+            path.setAttribute("d", curve
+                ? chart.path(curve.values, curve.stepNm, curve.stepNm || name === "light" ? 1 : 2) : "");
+        }
+        const { total } = shown.factor;
+        over.setAttribute("d", isOn("total") && peak > 1 ? chart.area(total, 1, STEP_NM) : "");
+        const y = Math.round(chart.y(1)) + 0.5;
+        oneLine.setAttribute("d", `M${px(chart.x(FIRST_NM))} ${y}H${px(chart.x(FIRST_NM + FINE - 1))}`);
+        oneText.setAttribute("x", px(chart.x(FIRST_NM + FINE - 1)));
+        oneText.setAttribute("y", y - 6);
+        drawDyes();
+        const slope = isOn("slope") ? drawSlope() : null;
+        if (!slope) {
+            lines.get("slope").setAttribute("d", "");
+        }
+        drawLabels(drawn, slope);
+        readOut();
+    }
+
+    function drawDyes() {
+        const parts = [];
+        for (const dye of shown.dyes) {
+            const paint = (d, kind) => {
+                const path = svgElement("path", { d, class: `${kind} ${dye.kind}` });
+                dye.color.forEach(([name, value]) => path.style.setProperty(name, value));
+                path.style.setProperty("--faint", Math.min(dye.dose / FULL_DOSE, 1));
+                parts.push(path);
+            };
+            if (isOn("absorbed")) {
+                paint(chart.area(dye.absorbed, 0, 1, 3), "absorbed");
+            }
+            if (isOn("emitted")) {
+                paint(chart.path(dye.emission.map((v) => v / EMISSION_AT_1), 1, 3), "emitted");
+            }
+        }
+        dyeLayer.replaceChildren(...parts);
+    }
+
+    // The tangent at the steepest point; its place for the label.
+    function drawSlope() {
+        const { nm, perNm } = shown.steepest;
+        if (Math.abs(perNm) < 5e-5) {
+            return null;
+        }
+        const value = (shown.sampled.base[atNm(Math.floor(nm))] + shown.sampled.base[atNm(Math.ceil(nm))]) / 2;
+        const across = chart.x(nm + 1) - chart.x(nm);
+        const down = chart.y(value + perNm) - chart.y(value);
+        const reach = 24 / Math.hypot(across, down);
+        const [x, y] = [chart.x(nm), chart.y(value)];
+        lines.get("slope").setAttribute("d",
+            `M${px(x - reach * across)} ${px(y - reach * down)}L${px(x + reach * across)} ${px(y + reach * down)}`);
+        return [nm, value];
+    }
+
+    function drawLabels(drawn, slope) {
+        const labelOf = new Map(CURVES.map(({ key, label }) => [key, label]));
+        const items = drawn.map((curve) => ({
+            ...curve, key: curve.line ?? curve.key, text: labelOf.get(curve.key), kind: curve.key,
+        })).filter(({ key }) => key !== "before-reflectance");
+        // Without dyes the two are the same line, which has one label.
+        const isOne = !shown.sampled.fluoresces && isOn("reflectance");
+        const named = items.filter(({ key }) => key !== "total" || !isOne);
+        if (isOne && isOn("total")) {
+            named.find(({ key }) => key === "reflectance").text = "reflectance = total radiance factor";
+        }
+        const drawnLines = drawn.map(({ values: v, stepNm }) => ({ values: v, stepNm }));
+        for (const dye of shown.dyes.filter(({ dose }) => dose >= FULL_DOSE)) {
+            if (isOn("absorbed")) {
+                named.splice(2, 0, { key: `${dye.name} a`, text: `${dye.name}, ${dye.doseText}`, kind: dye.kind,
+                    color: dye.color, values: dye.absorbed });
+                drawnLines.push({ values: dye.absorbed });
+            }
+            if (isOn("emitted")) {
+                const scaled = dye.emission.map((v) => v / EMISSION_AT_1);
+                named.push({ key: `${dye.name} e`, text: `emission (1 is ${EMISSION_AT_1}/nm)`, kind: dye.kind,
+                    color: dye.color, values: scaled });
+                drawnLines.push({ values: scaled });
+            }
+        }
+        if (slope) {
+            named.splice(1, 0, { key: "slope", text: shown.slopeText, kind: "slope", at: slope });
+        }
+        drawnLines.push({ values: [1, 1], stepNm: FINE });
+        chart.placeLabels(named, drawnLines);
+    }
+
+    // Values at the cursor: in the list, the table and, for screen readers, in words.
+    function readOut() {
+        const { nm } = chart;
+        const { sampled, factor, power, before, steepest } = shown;
+        const coarse = nm === null ? 0 : Math.round(atNm(nm) / STEP_NM);
+        const at = (list) => (nm === null || !list ? null : list.length === COARSE ? list[coarse] : list[atNm(nm)]);
+        const found = {
+            total: at(factor.total), reflectance: at(sampled.reflectance), base: at(sampled.base),
+            passed: at(sampled.passed ?? null), light: at(power), leaving: at(factor.leaving),
+            before: at(before?.total),
+        };
+        for (const [key, value] of Object.entries(found)) {
+            values.get(key).textContent = nm === null ? "" : written(value);
+        }
+        values.get("slope").textContent = Math.abs(steepest.perNm).toFixed(4);
+        table.draw(shown, nm === null ? null : atNm(nm));
+        const names = { total: "total", reflectance: "reflectance", passed: "film lets through", light: "light" };
+        const words = Object.entries(names).filter(([key]) => found[key] !== null && isOn(key))
+            .map(([key, name]) => `${name} ${written(found[key])}`);
+        const dyes = nm === null ? [] : shown.dyes.slice(0, DYE_ROWS)
+            .map((dye) => `${dye.name} absorbs ${written(dye.absorbed[atNm(nm)])}`);
+        chart.say(`${nm} nm: ${[...words, ...dyes].join(", ")}`);
+        const dots = nm === null ? [] : curves().map((curve) => ({ value: at(curve.values), kind: curve.key }));
+        chart.showDots(dots);
+    }
+
+    // What is on screen at every nanometer; radiance factors only where they are computed.
+    function asCsv() {
+        const columns = curves().map(({ key, line, values: v, stepNm = 1 }) => ({
+            name: columnName(line ?? key), valueAt: (i) => (i % stepNm === 0 ? v[i / stepNm] : null),
+        }));
+        for (const dye of shown.dyes) {
+            if (isOn("absorbed")) {
+                columns.push({ name: `absorbed by ${dye.name}`, valueAt: (i) => dye.absorbed[i] });
+            }
+            if (isOn("emitted")) {
+                columns.push({ name: `emission of ${dye.name} per nm`, valueAt: (i) => dye.emission[i] });
+            }
+        }
+        const rows = Array.from({ length: FINE }, (_, i) => [FIRST_NM + i, ...columns.map(({ valueAt }) => valueAt(i))]);
+        return csvOf(["wavelength_nm", ...columns.map(({ name }) => name)], rows);
+    }
+
+    return {
+        draw(now) {
+            const before = shown;
+            const key = [now.light.name, state.uv].join();
+            if (before?.sampled === now.sampled && before.key === key && before.cube === now.cube
+                && before.otherSampled === now.otherSampled) {
+                return;
+            }
+            shown = describe(now, key);
+            drawLines();
+        },
+    };
+}
+
+const COLUMNS = {
+    total: "total_radiance_factor", base: "base_reflectance", passed: "film_lets_through",
+    light: "light_relative_power", leaving: "light_leaving_relative_power",
+    "before-total": "before_total_radiance_factor", "before-reflectance": "before_reflectance",
+};
+const columnName = (key) => COLUMNS[key] ?? key;
+
+function peakSeen(values, stepNm) {
+    const [from, to] = SEEN_NM.map((nm) => atNm(nm) / stepNm);
+    return values.slice(from, to + 1).reduce((peak, v) => (v > peak ? v : peak), 0);
+}
+
+// All that the chart shows of the state.
+function describe(now, key) {
+    const { sampled, light, below, cube } = now;
+    const factor = radianceFactor(sampled, light, state.uv, below);
+    const power = Float64Array.from(light.power, (v, i) => v * kept(FIRST_NM + i, state.uv, below));
+    const seen = factor.total.slice(atNm(400) / STEP_NM, atNm(700) / STEP_NM + 1);
+    const isDark = seen.filter((v) => Number.isNaN(v)).length > seen.length / 2;
+    const dyes = sampled.dyes.map((dye) => ({ ...dye, ...doseOf(dye, cube), ...dyeColor(dye, cube) }));
+    const steepest = steepestOf(sampled.base);
+    const other = now.otherSampled
+        ? { total: radianceFactor(now.otherSampled, light, state.uv, below).total, reflectance: now.otherSampled.reflectance }
+        : null;
+    const absent = new Set(sampled.fluoresces ? [] : ["base", "passed", "absorbed", "emitted"]);
+    if (!sampled.passed) {
+        absent.add("passed");
+    }
+    return {
+        key, cube, sampled, light, factor, power, isDark, dyes, steepest, absent,
+        before: other,
+        otherSampled: now.otherSampled,
+        slopeText: slopeText(Math.abs(steepest.perNm), sampled.fluoresces, cube.meta.fit),
+        summary: summaryOf(now, isDark),
+    };
+}
+
+function summaryOf({ sampled, cube }) {
+    return sampled.fluoresces || cube.meta.dyes.length === 0 ? "" : "No dye is needed: a reflectance shows this color.";
+}
+
+function doseOf(dye, cube) {
+    return { doseText: `${cube.meta.model === "film" ? "optical density" : "concentration"} ${dye.dose.toFixed(2)}` };
+}
+
+// A dye has the hue of what it emits; neighbors among the cube's dyes differ in lightness.
+function dyeColor(dye, cube) {
+    const xyz = [0, 1, 2].map((k) => {
+        let sum = 0;
+        for (let o = 0; o < COARSE; o += 1) {
+            sum += dye.emission[STEP_NM * o] * cube.matching[3 * o + k];
+        }
+        return sum;
+    });
+    const [, a, b] = cube.labOf(xyz.map((v) => (xyz[1] > 0 ? (0.4 * v) / xyz[1] : 0)));
+    const hue = ((Math.atan2(b, a) * 180) / Math.PI + 360) % 360;
+    const isOdd = cube.meta.dyes.indexOf(dye.name) % 2 === 1;
+    return { color: [["--hue", `${hue.toFixed(1)}deg`]], kind: isOdd ? "dye odd" : "dye" };
+}
+
+// The steepest nanometer of a curve.
+function steepestOf(values) {
+    let best = { nm: FIRST_NM + 0.5, perNm: 0 };
+    for (let i = 0; i + 1 < values.length; i += 1) {
+        const perNm = values[i + 1] - values[i];
+        if (Math.abs(perNm) > Math.abs(best.perNm)) {
+            best = { nm: FIRST_NM + i + 0.5, perNm };
+        }
+    }
+    return best;
+}
+
+// A slope and its limit. Between nodes with and without dyes the limit is that of both.
+function slopeText(perNm, fluoresces, { slope_max_per_nm: alone, slope_under_dyes_per_nm: underDyes, relaxed }) {
+    const slope = perNm.toFixed(4);
+    // The curve is sampled by 1 nm and rounded.
+    const isWithin = (limit) => limit !== null && perNm <= limit * (1 + 1e-3);
+    if (fluoresces && isWithin(underDyes)) {
+        return `${slope} of at most ${underDyes} per nm under dyes`;
+    }
+    if (isWithin(alone)) {
+        return `${slope} of at most ${alone} per nm`;
+    }
+    return alone !== null && relaxed ? `${slope} per nm: steeper than ${alone}, as nothing else matched` : `${slope} per nm`;
+}
+
+// Colors of light by wavelength, as strong as the screen shows them, and fading where they are hardly seen.
+function spectralColors(cube) {
+    const found = [];
+    for (let i = 0; i < COARSE; i += 2) {
+        const nm = FIRST_NM + STEP_NM * i;
+        const xyz = [0, 1, 2].map((k) => cube.matching[3 * i + k]);
+        const rgb = multiply(cube.lights[0].screen[SCREEN], xyz).map((v) => Math.max(v, 0));
+        const most = Math.max(...rgb);
+        const sum = xyz[0] + xyz[1] + xyz[2];
+        const isSeen = most > 0 && nm >= SEEN_NM[0] && nm <= SEEN_NM[1];
+        found.push({
+            nm,
+            color: cssColor({ rgb: most > 0 ? rgb.map((v) => v / most) : [0, 0, 0] }),
+            opacity: isSeen ? Math.min(Math.sqrt(sum / 0.2), 1).toFixed(3) : 0,
+        });
+    }
+    return found;
+}
+
+// The dyes, their doses, and what they do at the cursor. It keeps its height.
+function makeDyeTable() {
+    const heads = ["Dye", "", "absorbs", "emits per nm"].map((text, k) =>
+        element("th", { scope: "col", class: k > 0 ? "number-cell" : "" }, text));
+    const rows = Array.from({ length: DYE_ROWS + 1 }, () => {
+        const sample = svgElement("svg", { viewBox: "0 0 12 12", class: "dye-sample", "aria-hidden": "true" },
+            svgElement("rect", { width: 12, height: 12, rx: 3 }));
+        const name = element("span", { class: "dye-name" });
+        const cells = [0, 1, 2].map(() => element("td", { class: "number-cell" }));
+        return { row: element("tr", {}, element("td", {}, element("div", {}, sample, name)), ...cells), sample, name, cells };
+    });
+    const table = element("table", { class: "dyes" },
+        element("thead", {}, element("tr", {}, ...heads)),
+        element("tbody", {}, ...rows.map(({ row }) => row)));
+    const fill = ({ sample, name, cells }, text, numbers, dye) => {
+        name.textContent = text;
+        name.title = text;
+        cells.forEach((cell, k) => {
+            cell.textContent = numbers[k] ?? "";
+        });
+        sample.setAttribute("class", dye ? `dye-sample ${dye.kind}` : "dye-sample none");
+        dye?.color.forEach(([property, value]) => sample.style.setProperty(property, value));
+    };
+    return {
+        root: table,
+        draw({ dyes, cube, summary }, at) {
+            heads[1].textContent = cube.meta.model === "film" ? "optical density" : "concentration";
+            const isAll = dyes.length <= rows.length;
+            const own = isAll ? dyes : dyes.slice(0, DYE_ROWS);
+            const rest = isAll ? [] : dyes.slice(DYE_ROWS);
+            rows.forEach((row, k) => {
+                const dye = own[k];
+                if (dye) {
+                    const numbers = at === null ? [] : [dye.absorbed[at].toFixed(3), dye.emission[at].toFixed(4)];
+                    fill(row, dye.name, [dye.dose.toFixed(3), ...numbers], dye);
+                } else if (k === own.length && rest.length > 0) {
+                    const dose = rest.reduce((sum, one) => sum + one.dose, 0);
+                    const absorbed = at === null ? "" : rest.reduce((sum, one) => sum + one.absorbed[at], 0).toFixed(3);
+                    fill(row, `${rest.length} more`, [dose.toFixed(3), absorbed], null);
+                } else {
+                    fill(row, k === 0 ? summary : "", [], null);
+                }
+            });
+        },
+    };
 }
