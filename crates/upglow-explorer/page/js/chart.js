@@ -1,9 +1,8 @@
 // Charts over wavelength: axes, lines and their labels, a cursor by pointer and keys, and files of them.
 
-import { FINE, FIRST_NM } from "./cube.js";
+import { FINE, FIRST_NM, LAST_NM } from "./cube.js";
 import { element, svgElement } from "./dom.js";
 
-const LAST_NM = FIRST_NM + FINE - 1;
 // Room around the plot in pixels: for the numbers of the axes and for a line of text above.
 const ROOM = { left: 40, right: 8, top: 24, bottom: 44 };
 // The strip of spectral colors under the plot.
@@ -212,42 +211,46 @@ export class WaveChart {
             }
             return sum;
         };
+        // The title has its place already.
+        for (let r = 0; r < 4; r += 1) {
+            taken.fill(20, r * columns, r * columns + Math.ceil(widthOf(this.title) / cell));
+        }
         this.places ??= new Map();
         const places = new Map();
         const texts = items.map((item) => {
             const width = widthOf(item.text);
             const before = this.places.get(item.key);
-            let best = { cost: 16 + width / 8 };
+            let best = { cost: 20 + width / 6 };
             const consider = (x, y, extra) => {
-                if (x < ROOM.left + 2 || x + width > this.right - 2 || y < ROOM.top - 18 || y + 14 > this.bottom - 2) {
+                if (x < ROOM.left + 2 || x + width > this.right - 2 || y < ROOM.top - 20 || y + 14 > this.bottom - 2) {
                     return;
                 }
                 const moved = before ? 0.04 * Math.hypot(x - before.x, y - before.y) : 0;
-                const cost = extra + Math.min(moved, 12) + boxCost(x, y, width);
-                if (cost < best.cost) {
-                    best = { cost, x, y };
+                const least = extra + Math.min(moved, 12);
+                if (least < best.cost) {
+                    const cost = least + boxCost(x, y, width);
+                    best = cost < best.cost ? { cost, x, y } : best;
                 }
+            };
+            const around = (x, y, extra) => {
+                consider(x - width / 2, y - 18, extra);
+                consider(x + 8, y - 8, extra + 1);
+                consider(x - 8 - width, y - 8, extra + 1);
+                consider(x - width / 2, y + 4, extra + 2);
             };
             if (item.at) {
                 const [x, y] = [this.x(item.at[0]), this.y(item.at[1])];
-                for (const dy of [-8, -28, 12, -48, 32]) {
-                    consider(x + 10, y + dy, Math.abs(dy + 8) / 10);
-                    consider(x - 10 - width, y + dy, 1 + Math.abs(dy + 8) / 10);
+                for (const dy of [0, 16, -16, 32, -32, 48, -48]) {
+                    consider(x + 14, y + dy - 8, Math.abs(dy) / 6);
+                    consider(x - 14 - width, y + dy - 8, Math.abs(dy) / 6 + 1);
                 }
             } else {
-                const bottom = Math.max(...item.values.map((v) => (Number.isNaN(v) ? 0 : v)));
-                for (let x = ROOM.left + 4; x + width < this.right; x += 8) {
-                    let [high, low] = [Infinity, -Infinity];
-                    for (let at = x; at <= x + width; at += cell) {
-                        const y = yAt(item, at);
-                        high = Math.min(high, y);
-                        low = Math.max(low, y);
-                    }
-                    // A label far from its line, or at its foot, is hard to see as its own.
-                    const foot = 14 * (1 - (this.bottom - high) / (this.bottom - this.y(bottom)));
-                    if (low >= high) {
-                        consider(x, high - 17, 0.4 * (low - high) + foot);
-                        consider(x, low + 3, 0.4 * (low - high) + foot + 1);
+                // At its foot a line is hard to tell from others.
+                const peak = item.values.reduce((most, v) => (v > most ? v : most), 1e-9);
+                for (let x = ROOM.left + 4; x < this.right; x += 8) {
+                    const y = yAt(item, x);
+                    if (y >= ROOM.top - 2) {
+                        around(x, y, 14 * (1 - ((this.bottom - y) / (this.bottom - ROOM.top)) * (this.top / peak)));
                     }
                 }
             }

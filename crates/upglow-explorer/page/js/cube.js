@@ -4,6 +4,7 @@ import { labOf, multiply } from "./color.js";
 
 export const FIRST_NM = 300;
 export const FINE = 531;
+export const LAST_NM = FIRST_NM + FINE - 1;
 // Sums over emitted light are over 5 nm, as the library's.
 export const STEP_NM = 5;
 export const COARSE = 107;

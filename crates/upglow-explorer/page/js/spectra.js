@@ -10,7 +10,7 @@ import { WaveChart, csvOf, download, px, standaloneSvg, steppedTop } from "./cha
 const CURVES = [
     { key: "total", name: "Total", label: "total radiance factor" },
     { key: "reflectance", name: "Reflectance", label: "reflectance" },
-    { key: "base", name: "Base", label: "base reflectance, without absorption" },
+    { key: "base", name: "Base", label: "base reflectance" },
     { key: "slope", name: "Steepest slope", label: "" },
     { key: "passed", name: "Film lets through", label: "what the film lets through" },
     { key: "absorbed", name: "Dyes absorb", label: "" },
@@ -19,6 +19,11 @@ const CURVES = [
     { key: "leaving", name: "Light leaving", label: "light leaving" },
     { key: "before", name: "Cube before", label: "before" },
 ];
+// Samples of lines in the list that are not a straight one.
+const SAMPLES_OF = {
+    absorbed: { d: "M0 8C6 8 6 0 10 0S14 8 20 8Z", class: "absorbed" },
+    emitted: { d: "M0 7C6 7 6 1 10 1S14 7 20 7", class: "emitted" },
+};
 // Emission of this much per nanometer is drawn at 1, so that emission of common dyes fills half the chart.
 const EMISSION_AT_1 = 0.04;
 // Dyes of smaller doses are drawn fainter: a blend of nodes often has traces of some.
@@ -56,14 +61,13 @@ export function makeSpectra(root, app) {
         lines.set(key, chart.plot.appendChild(svgElement("path", { class: `curve ${key}` })));
     }
     const oneLine = chart.marks.appendChild(svgElement("path", { class: "one" }));
-    const oneText = chart.marks.appendChild(svgElement("text", { class: "tick end" }, "1: as much as arrives"));
 
     const keys = element("div", { class: "keys", role: "group", "aria-label": "Lines shown" });
     const values = new Map();
     const buttons = new Map(CURVES.map(({ key, name, label }) => {
         const value = element("span", { class: "value", "aria-hidden": "true" });
         const sample = svgElement("svg", { viewBox: "0 0 20 8", class: "sample", "aria-hidden": "true" },
-            svgElement("path", { d: "M0 4H20", class: `curve ${key}` }));
+            svgElement("path", SAMPLES_OF[key] ?? { d: "M0 4H20", class: `curve ${key}` }));
         const button = element("button", { type: "button", title: label }, sample, name, value);
         button.addEventListener("click", () => {
             chosen.set(key, !isOn(key));
@@ -134,8 +138,6 @@ export function makeSpectra(root, app) {
         over.setAttribute("d", isOn("total") && peak > 1 ? chart.area(total, 1, STEP_NM) : "");
         const y = Math.round(chart.y(1)) + 0.5;
         oneLine.setAttribute("d", `M${px(chart.x(FIRST_NM))} ${y}H${px(chart.x(FIRST_NM + FINE - 1))}`);
-        oneText.setAttribute("x", px(chart.x(FIRST_NM + FINE - 1)));
-        oneText.setAttribute("y", y - 6);
         drawDyes();
         const slope = isOn("slope") ? drawSlope() : null;
         if (!slope) {
@@ -208,7 +210,9 @@ export function makeSpectra(root, app) {
         if (slope) {
             named.splice(1, 0, { key: "slope", text: shown.slopeText, kind: "slope", at: slope });
         }
-        drawnLines.push({ values: [1, 1], stepNm: FINE });
+        const one = { key: "one", text: "1: as much as arrives", kind: "light", values: [1, 1], stepNm: FINE };
+        named.splice(1, 0, one);
+        drawnLines.push(one);
         chart.placeLabels(named, drawnLines);
     }
 
@@ -376,7 +380,7 @@ function spectralColors(cube) {
 
 // The dyes, their doses, and what they do at the cursor. It keeps its height.
 function makeDyeTable() {
-    const heads = ["Dye", "", "absorbs", "emits per nm"].map((text, k) =>
+    const heads = ["Dye", "", "absorbs", "emits /nm"].map((text, k) =>
         element("th", { scope: "col", class: k > 0 ? "number-cell" : "" }, text));
     const rows = Array.from({ length: DYE_ROWS + 1 }, () => {
         const sample = svgElement("svg", { viewBox: "0 0 12 12", class: "dye-sample", "aria-hidden": "true" },
@@ -408,7 +412,7 @@ function makeDyeTable() {
                 const dye = own[k];
                 if (dye) {
                     const numbers = at === null ? [] : [dye.absorbed[at].toFixed(3), dye.emission[at].toFixed(4)];
-                    fill(row, dye.name, [dye.dose.toFixed(3), ...numbers], dye);
+                    fill(row, dye.name, [dye.dose < 5e-4 ? "< 0.001" : dye.dose.toFixed(3), ...numbers], dye);
                 } else if (k === own.length && rest.length > 0) {
                     const dose = rest.reduce((sum, one) => sum + one.dose, 0);
                     const absorbed = at === null ? "" : rest.reduce((sum, one) => sum + one.absorbed[at], 0).toFixed(3);
