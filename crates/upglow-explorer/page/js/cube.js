@@ -75,14 +75,22 @@ export class Cube {
 
     // The color that the cube answers with, mixed of its nodes' colors.
     colorOf(rgb) {
-        const m = this.lookUp(rgb);
+        return this.mixedColor(this.lookUp(rgb));
+    }
+
+    mixedColor({ a, b, c, d }) {
         const xyz = this.nodeXyz;
-        const mixed = (k) => m.a.weight * xyz[3 * m.a.node + k] + m.b.weight * xyz[3 * m.b.node + k]
-            + m.c.weight * xyz[3 * m.c.node + k] + m.d.weight * xyz[3 * m.d.node + k];
+        const mixed = (k) => a.weight * xyz[3 * a.node + k] + b.weight * xyz[3 * b.node + k]
+            + c.weight * xyz[3 * c.node + k] + d.weight * xyz[3 * d.node + k];
         return [mixed(0), mixed(1), mixed(2)];
     }
 
-    // The first of the spaces is the cube's own.
+    mixedDose({ a, b, c, d }) {
+        const dose = this.nodeDose;
+        return a.weight * dose[a.node] + b.weight * dose[b.node]
+            + c.weight * dose[c.node] + d.weight * dose[d.node];
+    }
+
     rgbOf(xyz) {
         return multiply(this.meta.spaces[0].from_xyz, xyz);
     }

@@ -27,7 +27,7 @@ function embeddedCube() {
 }
 
 // A cube of the program; its borders come later.
-export async function servedCube(id) {
+async function servedCube(id) {
     const here = new URL(`cube/${id}`, document.baseURI).href;
     const [arrays, module, wgsl] =
         await Promise.all([getBytes(`${here}.data`), import(`${here}.js`), getText(`${here}.wgsl`)]);
@@ -44,21 +44,39 @@ const app = {
     shown: null,
     spaceNow: () => app.spaces.find(({ name }) => name === state.space),
     lightNow: () => app.cube.lights.find(({ name }) => name === state.light) ?? app.cube.lights[0],
-    // Shows another cube, beside the one before.
-    useCube(cube) {
-        const target = app.now?.target;
-        app.other = app.cube;
+    // Shows another cube, beside the one before. The numbers of the color stay: under another light they
+    // mean the same to the space, but not as XYZ.
+    useCube(cube, other = app.cube) {
+        if (state.light === app.cube?.lights[0].name) {
+            // The light of the contract stays that of the contract.
+            state.light = cube.lights[0].name;
+        }
+        app.other = other;
         app.cube = cube;
         app.spaces = fieldSpaces(cube);
         app.shown = null;
         byId("facts").textContent = facts(cube.meta);
-        set(target ? { value: app.spaceNow().from(target) } : {});
+        if (!app.spaceNow()) {
+            // The space of the cube before, which no other has.
+            state.space = app.spaces[0].name;
+            state.value = app.spaces[0].from(app.now.target);
+        }
+        set({});
         if (!cube.borders) {
             getBytes(`cube/${cube.id}.borders`).then((buffer) => {
                 cube.setBorders(buffer);
                 redraw();
             }, (error) => app.say(error.message));
         }
+    },
+    // Shows a cube of the program. What is compared with it may stay.
+    async openCube(id, isOtherKept) {
+        const cube = await servedCube(id);
+        app.useCube(cube, (isOtherKept && app.other) || app.cube);
+    },
+    forgetOther() {
+        app.other = null;
+        redraw();
     },
     // Picks a color.
     goTo(xyz) {
@@ -96,6 +114,10 @@ function compute() {
     if (app.now?.key !== key) {
         app.sampled = cube.sample(cube.lookUp(inside), "looked up");
     }
+    const asked = [state.space, ...state.value].join();
+    if (app.before?.asked !== asked || app.before.cube !== app.other) {
+        app.before = before(asked);
+    }
     const light = app.lightNow();
     const sampled = app.shown?.sampled ?? app.sampled;
     const below = cube.meta.ultraviolet_below_nm;
@@ -105,7 +127,23 @@ function compute() {
         xyz: app.shown ? relit(sampled, cube.lights[0], 1, below) : cube.colorOf(inside),
         shown: app.shown,
         other: app.other,
+        otherSampled: app.before?.sampled,
+        otherXyz: app.before?.xyz,
+        otherTarget: app.before?.target,
     };
+}
+
+// The answer of the cube to compare with to the same numbers; null without one.
+function before(asked) {
+    const cube = app.other;
+    if (!cube) {
+        return null;
+    }
+    const space = fieldSpaces(cube).find(({ name }) => name === state.space);
+    const target = space ? space.to(state.value) : app.spaceNow().to(state.value);
+    const inside = cube.rgbOf(target).map((v) => Math.min(Math.max(v, 0), 1));
+    const sampled = cube.sample(cube.lookUp(inside), "before");
+    return { asked, cube, target, sampled, xyz: cube.colorOf(inside) };
 }
 
 let views = [];

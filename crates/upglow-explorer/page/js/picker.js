@@ -235,7 +235,14 @@ const digits = (v) => String(Number(v.toFixed(4)));
 // The space, its three numbers, and the swatches of what was asked and what the cube answers.
 function makeFields(root, app) {
     const space = element("select", { id: "space", "aria-label": "Space of the numbers" });
-    app.spaces.forEach(({ name }) => space.append(element("option", { value: name }, name)));
+    // Another cube may have a space that this one has not.
+    let listed = null;
+    const list = () => {
+        if (listed !== app.spaces) {
+            listed = app.spaces;
+            space.replaceChildren(...listed.map(({ name }) => element("option", { value: name }, name)));
+        }
+    };
     const inputs = [0, 1, 2].map((k) => {
         const input = element("input", { type: "number", step: "0.01", min: "-10", max: "10", id: `value-${k}` });
         input.addEventListener("input", () => {
@@ -275,6 +282,7 @@ function makeFields(root, app) {
         // The state of a color in the space of the fields.
         valueOf: (xyz) => ({ value: app.spaceNow().from(xyz).map((v) => Number(v.toFixed(5))) }),
         draw(now) {
+            list();
             const { name, channels } = app.spaceNow();
             space.value = name;
             inputs.forEach((input, k) => {

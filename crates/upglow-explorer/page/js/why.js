@@ -82,11 +82,12 @@ export function makeWhy(root, app) {
         }
         sentence.textContent = standingSentence(answer);
         const { reflectance, material, fitted, passive } = answer;
-        rows.reflectance.draw(now, reflectance, "of any slope", goTo(reflectance));
-        rows.material.draw(now, material, "reflecting or fluorescent", goTo(material));
+        // Those that are nearest in XYZ; fits may come nearer in ΔE00, and are materials of these kinds too.
+        drawColor(rows.reflectance, now, reflectance, [[passive, "the smooth one"]]);
+        drawColor(rows.material, now, material, [[fitted, "the direct fit"], [passive, "the smooth one"]]);
         const limit = now.cube.meta.fit.slope_max_per_nm;
-        const smooth = limit === null || limit === undefined ? "no slope limit" : `slope up to ${limit}/nm`;
-        drawMaterial(rows.passive, now, passive, smooth, answer.passive_refusal, "nearest smooth reflectance");
+        const smooth = typeof limit === "number" ? `slope up to ${limit}/nm` : "no slope limit";
+        drawMaterial(rows.passive, now, passive, smooth, answer.passive_refusal, "smooth reflectance");
         drawMaterial(rows.fitted, now, fitted, fitted?.kind_text ?? "", answer.fitted_refusal, "direct fit");
         // A color outside the cube has no look-up of its own.
         if (now.outside && fitted && !now.shown && forced !== key) {
@@ -98,7 +99,13 @@ export function makeWhy(root, app) {
             : "";
     }
 
-    const goTo = ({ xyz }) => ({ act: () => app.goTo(xyz), isOn: false });
+    function drawColor(row, now, nearest, fits) {
+        let best = [nearest, "nearest in XYZ"];
+        for (const [found, text] of fits) {
+            best = found && found.de2000 < best[0].de2000 ? [found, text] : best;
+        }
+        row.draw(now, best[0], best[1], { act: () => app.goTo(best[0].xyz), isOn: false });
+    }
 
     function show(found, title) {
         app.show({ sampled: sampledOf(found), title, found });
@@ -127,8 +134,8 @@ export function makeWhy(root, app) {
         drawCube(now);
         if (!served) {
             sentence.textContent = standingByBorders(now);
-            note.textContent = "Approximate, by the drawn borders. Nearest reflectances and the direct fit are not "
-                + `here. ${NEEDS_PROGRAM}`;
+            note.textContent = "Approximate, by the drawn borders. Nearest reflectances and the direct fit "
+                + `are not here. ${NEEDS_PROGRAM}`;
             return;
         }
         if (asked !== key) {
@@ -168,7 +175,8 @@ function makeNearest(name, action) {
             distance.textContent = Math.max(difference, 0).toFixed(2);
             act = next;
             button.disabled = isSame && action === "Go";
-            button.setAttribute("aria-label", action === "Go" ? `Go to the nearest ${name}` : `Show the ${name}`);
+            const verb = action === "Go" ? "Go to the nearest" : "Show the";
+            button.setAttribute("aria-label", `${verb} ${name}`);
             if (action === "Show") {
                 button.setAttribute("aria-pressed", String(isOn));
             }
@@ -189,7 +197,7 @@ function makeNearest(name, action) {
 function standingSentence({ standing, reflectance, material }) {
     const isReached = (nearest) => nearest.de2000 < NO_DIFFERENCE;
     const away = ({ de2000: difference, distance }) =>
-        `the nearest is ΔE00 ${difference.toFixed(2)} away, ${distance.toFixed(4)} in XYZ.`;
+        `the nearest in XYZ is ${distance.toFixed(4)} away, ΔE00 ${difference.toFixed(2)}.`;
     if (standing === "reflectance") {
         return "A reflectance shows this color.";
     }
@@ -217,7 +225,8 @@ function standingByBorders({ cube, target }) {
         const radians = (hue * Math.PI) / 180;
         return de2000([l, a, b], [Math.max(l, 0), most * Math.cos(radians), most * Math.sin(radians)]);
     };
-    const nearest = (kind) => `the nearest of its lightness and hue is about ΔE00 ${away(kind).toFixed(1)} away.`;
+    const nearest = (kind) =>
+        `the nearest of its lightness and hue is about ΔE00 ${away(kind).toFixed(1)} away.`;
     if (away(1) < NO_DIFFERENCE) {
         return "A reflectance shows this color.";
     }
@@ -283,7 +292,7 @@ function nearestOfCube(cube, labs, target) {
     const within = (v) => Math.min(Math.max(v, 0), 1);
     const looked = cube.rgbOf(target).map(within);
     const starts = nearestNodes(labs, lab)
-        .map((node) => [node % n, Math.floor(node / n) % n, Math.floor(node / (n * n))].map((k) => k / (n - 1)));
+        .map((node) => [1, n, n * n].map((stride) => (Math.floor(node / stride) % n) / (n - 1)));
     let best = { difference: Infinity };
     for (const start of [looked, ...starts]) {
         let rgb = start;

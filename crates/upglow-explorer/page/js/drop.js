@@ -1,0 +1,418 @@
+// Opens files: a picture beside the cube's answers to it, a picture of spectra, a light, a dye.
+
+import { canvasContext, cssColor, de2000, encoded, decoded, newImage, onScreen } from "./color.js";
+import { set } from "./state.js";
+import { NEEDS_PROGRAM, getBytes, getJson, postFile, sampledOf, served } from "./server.js";
+import { makeLight, relit } from "./cube.js";
+import { followPointer } from "./picker.js";
+import { element } from "./dom.js";
+
+// The page stays responsive if work is put aside so often.
+const SLICE_MS = 8;
+// Texels along an axis of a picture that the page reads by itself.
+const MOST_TEXELS = 512;
+// The start of a file by which its kind is told: a table's header, a picture's channels.
+const HEAD_BYTES = 65536;
+
+// Colors of differences, ΔE00, between which the map is mixed: coded sRGB.
+const RAMP = [
+    [0, [128, 128, 128]],
+    [1, [255, 216, 74]],
+    [2, [240, 120, 40]],
+    [5, [160, 0, 60]],
+];
+// Texels with dyes, and those without.
+const DYED = [177, 156, 255];
+const PLAIN = [96, 96, 96];
+
+export function makeDrop(root, app, panels) {
+    const chooser = element("input", { type: "file", id: "drop-file", class: "drop-file" });
+    const status = element("p", { class: "note drop-status", role: "status" });
+    const shown = element("div");
+    const kinds = served
+        ? "A picture (EXR, TIFF, PNG, JPEG, HDR, TGA), a spectral or bispectral EXR, a light or a dye as CSV."
+        : `A PNG or JPEG, read as sRGB. For other pictures, spectra, lights and dyes: ${NEEDS_PROGRAM}`;
+    root.append(
+        element("div", { class: "drop-choose" },
+            element("label", { for: "drop-file", class: "drop-label" }, "Choose a file"), chooser,
+            element("span", { class: "note" }, "or drop one anywhere on the page")),
+        element("p", { class: "note" }, kinds), status, shown);
+    let view = null;
+    let latest = 0;
+    // Lights of files, which every cube is to have.
+    const lights = [];
+    let seenCube = null;
+
+    async function take(file) {
+        latest += 1;
+        const ticket = latest;
+        const say = (line) => {
+            if (ticket === latest) {
+                status.textContent = line;
+            }
+        };
+        const show = (made) => {
+            if (ticket === latest) {
+                view = made;
+                shown.replaceChildren(made.root);
+                made.draw(app.now);
+            }
+        };
+        panels.open();
+        say(`Reading ${file.name} …`);
+        try {
+            say(await opened(file, show));
+        } catch (error) {
+            say(`${file.name}: ${error.message}`);
+        }
+    }
+
+    // Shows a file, and returns a line that says what it is.
+    async function opened(file, show) {
+        const name = encodeURIComponent(file.name);
+        if (!served) {
+            show(makePicture(app, await picturedByBrowser(file)));
+            return `${file.name}, read by the browser as sRGB.`;
+        }
+        const head = new TextDecoder("latin1").decode(await file.slice(0, HEAD_BYTES).arrayBuffer());
+        if (/\.csv$/i.test(file.name)) {
+            return head.includes("absorption") ? openDye(name, file) : openLight(name, file);
+        }
+        if (head.includes("spectralLayoutVersion")) {
+            const answer = await postFile(`spectral?name=${name}&cube=${app.cube.id}`, file);
+            const texels = new Float32Array(await getBytes(`drop/${answer.id}.data`));
+            show(makeSpectralPicture(app, { ...answer, texels, space: app.spaces[0] }));
+            return `${file.name}: ${answer.text}`;
+        }
+        const answer = await postFile(`picture?name=${name}&cube=${app.cube.id}`, file);
+        const texels = new Float32Array(await getBytes(`drop/${answer.id}.data`));
+        show(makePicture(app, { ...answer, texels, space: app.spaces[0] }));
+        return `${file.name}: ${answer.text}`;
+    }
+
+    async function openLight(name, file) {
+        const added = await addLight(app.cube, name, file);
+        lights.push({ name, file });
+        set({ light: added });
+        return `The light ${added} is chosen. It is also among those of Build.`;
+    }
+
+    async function openDye(name, file) {
+        const answer = await postFile(`dye?name=${name}`, file);
+        await panels.build.refresh();
+        return `${answer.text} Build can use it.`;
+    }
+
+    async function addLight(cube, name, file) {
+        const { nm, irradiance, weights, power, ...description } =
+            await postFile(`light?name=${name}&cube=${cube.id}`, file);
+        const light = makeLight(description, nm, irradiance, weights.flat(), power);
+        const at = cube.lights.findIndex((other) => other.name === light.name);
+        cube.lights.splice(at > 0 ? at : cube.lights.length, at > 0 ? 1 : 0, light);
+        return light.name;
+    }
+
+    chooser.addEventListener("change", () => {
+        if (chooser.files.length > 0) {
+            take(chooser.files[0]);
+            // The same file can be chosen again.
+            chooser.value = "";
+        }
+    });
+    const holdsFiles = (event) => event.dataTransfer?.types.includes("Files");
+    addEventListener("dragover", (event) => {
+        if (holdsFiles(event)) {
+            event.preventDefault();
+            document.body.classList.add("is-dropping");
+        }
+    });
+    addEventListener("dragleave", (event) => {
+        if (event.relatedTarget === null) {
+            document.body.classList.remove("is-dropping");
+        }
+    });
+    addEventListener("drop", (event) => {
+        document.body.classList.remove("is-dropping");
+        if (holdsFiles(event)) {
+            event.preventDefault();
+            take(event.dataTransfer.files[0]);
+        }
+    });
+
+    return {
+        draw(now) {
+            view?.draw(now);
+            if (seenCube !== now.cube) {
+                seenCube = now.cube;
+                for (const { name, file } of lights) {
+                    addLight(now.cube, name, file).then(() => set({}), (error) => app.say(error.message));
+                }
+            }
+        },
+    };
+}
+
+// What browsers decode, in linear sRGB.
+async function picturedByBrowser(file) {
+    let bitmap;
+    try {
+        bitmap = await createImageBitmap(file, { colorSpaceConversion: "default" });
+    } catch {
+        throw new Error("no picture that this browser reads; expected PNG or JPEG");
+    }
+    const step = Math.max(1, Math.ceil(Math.max(bitmap.width, bitmap.height) / MOST_TEXELS));
+    const [width, height] = [bitmap.width, bitmap.height].map((size) => Math.ceil(size / step));
+    const canvas = element("canvas", { width: String(width), height: String(height) });
+    const context = canvas.getContext("2d", { willReadFrequently: true });
+    context.imageSmoothingEnabled = false;
+    context.drawImage(bitmap, 0, 0, width, height);
+    const { data } = context.getImageData(0, 0, width, height);
+    const linear = Float32Array.from({ length: 256 }, (_, code) => decoded(code / 255));
+    const texels = new Float32Array(3 * width * height);
+    for (let i = 0; i < width * height; i += 1) {
+        for (let k = 0; k < 3; k += 1) {
+            texels[3 * i + k] = linear[data[4 * i + k]];
+        }
+    }
+    return { width, height, step, texels, space: { name: "sRGB" } };
+}
+
+// Gives way to what else the page has to do.
+const giveWay = () => new Promise((done) => { setTimeout(done); });
+
+// A canvas of texels in which one is picked, by pointer or arrow keys.
+function makeTexels(width, height, label, pick) {
+    const canvas = element("canvas", { width: String(width), height: String(height) });
+    const mark = element("div", { class: "texel-mark", hidden: "" });
+    const named = { tabindex: "0", role: "application", "aria-label": label };
+    const root = element("div", { class: "texels", ...named }, canvas, mark);
+    // Two of them fit into the panel, one below the other.
+    root.style.setProperty("max-width", `calc(32vh * ${width / height})`);
+    let at = [Math.floor(width / 2), Math.floor(height / 2)];
+    const within = (v, most) => Math.min(Math.max(v, 0), most - 1);
+    const go = (x, y) => pick([within(x, width), within(y, height)]);
+    followPointer(root, ([x, y]) => go(Math.floor(x * width), Math.floor(y * height)));
+    root.addEventListener("keydown", (event) => {
+        const step = event.shiftKey ? 10 : 1;
+        const move = {
+            ArrowLeft: [-step, 0], ArrowRight: [step, 0], ArrowUp: [0, -step], ArrowDown: [0, step],
+            Enter: [0, 0],
+        }[event.key];
+        if (move) {
+            event.preventDefault();
+            go(at[0] + move[0], at[1] + move[1]);
+        }
+    });
+    return {
+        root,
+        context: canvasContext(canvas),
+        mark([x, y]) {
+            at = [x, y];
+            mark.hidden = false;
+            mark.style.setProperty("left", `${(100 * (x + 0.5)) / width}%`);
+            mark.style.setProperty("top", `${(100 * (y + 0.5)) / height}%`);
+        },
+    };
+}
+
+// Bytes of an image from linear RGB of the screen.
+function putColor(image, at, { rgb }) {
+    for (let k = 0; k < 3; k += 1) {
+        image.data[at + k] = 255 * encoded(rgb[k]) + 0.5;
+    }
+    image.data[at + 3] = 255;
+}
+
+function putCode(image, at, code) {
+    for (let k = 0; k < 3; k += 1) {
+        image.data[at + k] = code[k];
+    }
+    image.data[at + 3] = 255;
+}
+
+function rampAt(difference) {
+    const after = RAMP.findIndex(([value]) => value > difference);
+    if (after < 0) {
+        return RAMP.at(-1)[1];
+    }
+    const [[from, low], [to, high]] = [RAMP[after - 1], RAMP[after]];
+    const t = (difference - from) / (to - from);
+    return low.map((v, k) => v + t * (high[k] - v));
+}
+
+// A picture, beside how far the cube's answers are from its texels and which of them use dyes.
+function makePicture(app, { width, height, step, texels, space }) {
+    const label = "arrow keys move, with Shift faster; the color is that of the texel";
+    const original = makeTexels(width, height, `Picture: ${label}`, pick);
+    const map = makeTexels(width, height, `Map of differences: ${label}`, pick);
+    const modes = [["Difference", "difference"], ["Dyes", "dyes"]].map(([name, mode]) => {
+        const button = element("button", { type: "button" }, name);
+        button.addEventListener("click", () => {
+            shownMode = mode;
+            paintMap(0, height);
+            drawModes();
+        });
+        return { button, mode };
+    });
+    const key = element("div", { class: "ramp", "aria-hidden": "true" });
+    const gradient = RAMP.map(([value, code]) => `rgb(${code.join(" ")}) ${(100 * value) / 5}%`);
+    const ramp = element("div", { class: "ramp-colors" });
+    ramp.style.setProperty("background", `linear-gradient(to right, ${gradient.join(", ")})`);
+    for (const [value] of RAMP) {
+        const tick = element("span", { class: "note" }, value === 5 ? "5+ ΔE00" : String(value));
+        tick.style.setProperty("left", `${(100 * value) / 5}%`);
+        key.append(tick);
+    }
+    key.append(ramp);
+    const dyeSwatch = element("span", { class: "dye-swatch" });
+    const dyeKey = element("p", { class: "note dye-key" }, dyeSwatch, "with dyes");
+    const shares = element("p", { class: "shares" });
+    const texel = element("p", { class: "note texel" }, "Click a texel, or move with the arrow keys.");
+    const root = element("div", { class: "opened" },
+        shares,
+        element("div", { class: width < height ? "pictures tall" : "pictures" }, original.root, map.root),
+        element("div", { class: "tabs", role: "group", "aria-label": "What the map shows" },
+            ...modes.map(({ button }) => button)),
+        element("div", { class: "map-keys" }, key, dyeKey), texel);
+
+    const differences = new Float32Array(width * height);
+    const doses = new Float32Array(width * height);
+    const images = [original, map].map(({ context }) => newImage(context, width, height));
+    let shownMode = "difference";
+    let cube = null;
+    let at = null;
+
+    function drawModes() {
+        for (const { button, mode } of modes) {
+            button.setAttribute("aria-pressed", String(mode === shownMode));
+        }
+        key.classList.toggle("away", shownMode !== "difference");
+        dyeKey.classList.toggle("away", shownMode !== "dyes");
+    }
+
+    // The space by its name: under another light its numbers mean another XYZ.
+    const spaceNow = () => app.spaces.find(({ name }) => name === space.name) ?? space;
+    const valueAt = (i) => [texels[3 * i], texels[3 * i + 1], texels[3 * i + 2]];
+
+    function pick([x, y]) {
+        at = [x, y];
+        app.goTo(spaceNow().to(valueAt(y * width + x)));
+        drawTexel();
+    }
+
+    function drawTexel() {
+        if (at) {
+            const [x, y] = at;
+            const i = y * width + x;
+            [original, map].forEach((canvas) => canvas.mark(at));
+            const dose = doses[i] > 0 ? `dyes of dose ${doses[i].toFixed(3)}` : "no dyes";
+            texel.textContent = `Texel ${x * step}, ${y * step}: ΔE00 ${differences[i].toFixed(2)}, ${dose}.`;
+        }
+    }
+
+    function paintMap(from, to) {
+        for (let i = from * width; i < to * width; i += 1) {
+            const dyed = doses[i] > 0 ? DYED : PLAIN;
+            putCode(images[1], 4 * i, shownMode === "dyes" ? dyed : rampAt(differences[i]));
+        }
+        map.context.putImageData(images[1], 0, 0, 0, from, width, to - from);
+    }
+
+    // Asks the cube for all texels, by rows; stops when there is another cube.
+    async function assess(asked) {
+        const found = spaceNow();
+        const isOwn = found === app.spaces[0];
+        const light = asked.lights[0];
+        let count = 0;
+        let missed = 0;
+        let dyed = 0;
+        let from = 0;
+        let start = performance.now();
+        for (let y = 0; y < height; y += 1) {
+            for (let i = y * width; i < (y + 1) * width; i += 1) {
+                const value = valueAt(i);
+                const xyz = found.to(value);
+                const rgb = isOwn ? value : asked.rgbOf(xyz);
+                const material = asked.lookUp(rgb.map((v) => Math.min(Math.max(v, 0), 1)));
+                differences[i] = de2000(asked.labOf(xyz), asked.labOf(asked.mixedColor(material)));
+                doses[i] = asked.mixedDose(material);
+                putColor(images[0], 4 * i, onScreen(xyz, light));
+                count += 1;
+                missed += differences[i] > 1 ? 1 : 0;
+                dyed += doses[i] > 0 ? 1 : 0;
+            }
+            if (performance.now() - start > SLICE_MS || y === height - 1) {
+                original.context.putImageData(images[0], 0, 0, 0, from, width, y + 1 - from);
+                paintMap(from, y + 1);
+                from = y + 1;
+                shares.textContent = `Looking up: ${((100 * from) / height).toFixed(0)} %`;
+                await giveWay();
+                if (cube !== asked) {
+                    return;
+                }
+                start = performance.now();
+            }
+        }
+        const share = (part) => `${((100 * part) / count).toFixed(1)} %`;
+        const texelsShown = step > 1 ? `the ${width} × ${height} texels shown` : "the texels";
+        shares.textContent =
+            `${share(missed)} of ${texelsShown} miss by more than 1 ΔE00; ${share(dyed)} use dyes.`;
+        drawTexel();
+    }
+
+    drawModes();
+    return {
+        root,
+        draw(now) {
+            if (cube !== now.cube) {
+                cube = now.cube;
+                assess(cube);
+            }
+        },
+    };
+}
+
+// A picture of spectra; a pixel's material takes the place of the cube's.
+function makeSpectralPicture(app, { id, width, height, step, texels, space, file }) {
+    const view = makeTexels(width, height, "Picture: arrow keys move; charts show the pixel", pick);
+    const root = element("div", { class: "opened" },
+        element("div", { class: "pictures" }, view.root),
+        element("p", { class: "note texel" }, "Click a pixel: charts show its spectrum, under every light."));
+    const text = root.lastChild;
+    const image = newImage(view.context, width, height);
+    const light = app.cube.lights[0];
+    for (let i = 0; i < width * height; i += 1) {
+        const value = [texels[3 * i], texels[3 * i + 1], texels[3 * i + 2]];
+        putColor(image, 4 * i, onScreen(space.to(value), light));
+    }
+    view.context.putImageData(image, 0, 0);
+    let isAsking = false;
+    let next = null;
+
+    // One request at a time; of those that come meanwhile only the last counts.
+    async function pick(place) {
+        view.mark(place);
+        next = place;
+        if (isAsking) {
+            return;
+        }
+        isAsking = true;
+        while (next) {
+            const [x, y] = next.map((v) => v * step);
+            next = null;
+            try {
+                const { text: words, ...answer } = await getJson(`drop/${id}/pixel?x=${x}&y=${y}`);
+                const sampled = sampledOf(answer);
+                const { cube, now } = app;
+                app.goTo(relit(sampled, cube.lights[0], 1, now.below));
+                app.show({ sampled, title: answer.label });
+                text.textContent = `Pixel ${x}, ${y}. ${words ?? ""}`;
+            } catch (error) {
+                text.textContent = error.message;
+            }
+        }
+        isAsking = false;
+    }
+
+    return { root, draw() {} };
+}
