@@ -3,6 +3,7 @@
 import { cssColor, de2000, onScreen } from "./color.js";
 import { NEEDS_PROGRAM, getJson, postJson, served } from "./server.js";
 import { element } from "./dom.js";
+import { percent } from "./heat.js";
 
 // How often the program is asked how far it is.
 const POLL_MS = 120;
@@ -330,13 +331,9 @@ function commandLine(text) {
 const COMPARED = [
     ["ΔE00 of this color", (_, difference) => difference.toFixed(2)],
     ["mean ΔE00 of nodes", ({ summary }) => summary.mean_de2000.toFixed(3)],
-    ["nodes above 1 ΔE00", ({ summary }) => percent(summary.nodes - summary.within_1, summary)],
-    ["nodes with dyes", ({ summary }) => percent(summary.fluorescent, summary)],
+    ["nodes above 1 ΔE00", ({ summary }) => percent(1 - summary.within_1 / summary.nodes)],
+    ["nodes with dyes", ({ summary }) => percent(summary.fluorescent / summary.nodes)],
 ];
-
-function percent(count, { nodes }) {
-    return `${((100 * count) / nodes).toFixed(1)} %`;
-}
 
 // The cube before beside the one that is shown.
 function makeComparison(app) {

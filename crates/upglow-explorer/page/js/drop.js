@@ -5,6 +5,7 @@ import { set } from "./state.js";
 import { NEEDS_PROGRAM, getBytes, getJson, postFile, sampledOf, served } from "./server.js";
 import { makeLight, relit } from "./cube.js";
 import { followPointer } from "./picker.js";
+import { percent } from "./heat.js";
 import { element } from "./dom.js";
 
 // The page stays responsive if work is put aside so often.
@@ -353,10 +354,9 @@ function makePicture(app, { width, height, step, texels, space }) {
                 start = performance.now();
             }
         }
-        const share = (part) => `${((100 * part) / count).toFixed(1)} %`;
         const texelsShown = step > 1 ? `the ${width} × ${height} texels shown` : "the texels";
-        shares.textContent =
-            `${share(missed)} of ${texelsShown} miss by more than 1 ΔE00; ${share(dyed)} use dyes.`;
+        shares.textContent = `${percent(missed / count)} of ${texelsShown} miss by more than 1 ΔE00; `
+            + `${percent(dyed / count)} use dyes.`;
         drawTexel();
     }
 

@@ -212,7 +212,7 @@ export function makeHeat(root, app) {
 }
 
 const NOTHING = new Float64Array(COARSE);
-const percent = (share) => `${(100 * share).toFixed(1)} %`;
+export const percent = (share) => `${(100 * share).toFixed(1)} %`;
 
 // The greatest value, and the row that sends the most.
 function mostOf(moved) {
