@@ -10,7 +10,7 @@ const HTML: &str = include_str!("../page/index.html");
 const STYLE: &str = include_str!("../page/style.css");
 
 /// Each after those that it imports.
-const SCRIPTS: [&str; 16] = [
+const SCRIPTS: [&str; 17] = [
     include_str!("../page/js/color.js"),
     include_str!("../page/js/state.js"),
     include_str!("../page/js/server.js"),
@@ -22,6 +22,7 @@ const SCRIPTS: [&str; 16] = [
     include_str!("../page/js/heat.js"),
     include_str!("../page/js/why.js"),
     include_str!("../page/js/relight.js"),
+    include_str!("../page/js/gpu.js"),
     include_str!("../page/js/sphere.js"),
     include_str!("../page/js/build.js"),
     include_str!("../page/js/drop.js"),

@@ -65,11 +65,11 @@ export function de2000([l1, a1, b1], [l2, a2, b2]) {
 // The widest space that the screen says it shows.
 export const SCREEN = matchMedia("(color-gamut: p3)").matches ? "p3" : "srgb";
 export const SCREEN_NAME = SCREEN === "p3" ? "Display P3" : "sRGB";
-const CSS_SPACE = SCREEN === "p3" ? "display-p3" : "srgb";
+export const CSS_SPACE = SCREEN === "p3" ? "display-p3" : "srgb";
 // The luminance of the screen's linear RGB.
-const LUMINANCE = SCREEN === "p3" ? [0.22897, 0.69174, 0.07929] : [0.21264, 0.71517, 0.07219];
+export const LUMINANCE = SCREEN === "p3" ? [0.22897, 0.69174, 0.07929] : [0.21264, 0.71517, 0.07219];
 // Channels beyond 0 to 1 by less are so by rounding.
-const ROUNDING = 1e-4;
+export const ROUNDING = 1e-4;
 
 // A color of a light on the screen: linear RGB within 0 to 1, and whether it was outside. A color outside
 // keeps its luminance and hue and becomes as gray as necessary.
