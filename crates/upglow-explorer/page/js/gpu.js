@@ -1,7 +1,7 @@
 // WebGPU: the color of a material by the WGSL that the cube is exported as, and spheres of that color.
 
 import { CSS_SPACE, LUMINANCE, ROUNDING, SCREEN } from "./color.js";
-import { COARSE, FIRST_NM, STEP_NM, kept } from "./cube.js";
+import { COARSE, FINE, FIRST_NM, STEP_NM, kept, relit } from "./cube.js";
 import { element } from "./dom.js";
 
 // Where the texels begin in the file of textures, and where it has the sizes of its two textures.
@@ -9,11 +9,17 @@ const TEXELS = 64;
 const SIZES = [16, 24];
 const BYTES_A_TEXEL = 16;
 
+// Invocations of a workgroup, and the parts in which each outgoing wavelength sums the incident ones: few
+// numbers after each other, so that single precision loses few digits, and enough work at a time.
+const INVOCATIONS = 128;
+const PARTS = 8;
+
 // Appended to the cube's WGSL. The sums are those of relit: over incident wavelengths for each outgoing one,
-// then over those. Halves are added, which loses fewer digits than one number after the other.
+// then over those.
 const COLOR_WGSL = `
 const COUNT: u32 = ${COARSE};
-const INVOCATIONS: u32 = 128;
+const INVOCATIONS: u32 = ${INVOCATIONS};
+const PARTS: u32 = ${PARTS};
 
 struct Wavelength {
     nm: f32,
@@ -24,38 +30,39 @@ struct Wavelength {
 
 @group(1) @binding(0) var<storage, read> wavelengths: array<Wavelength, COUNT>;
 @group(1) @binding(1) var<uniform> color: vec4f;
-@group(1) @binding(2) var<storage, read_write> leaving: array<f32, COUNT>;
+@group(1) @binding(2) var<storage, read_write> leaving: array<f32, COUNT * PARTS>;
 @group(1) @binding(3) var<storage, read_write> seen: array<vec4f, 2>;
 
-var<workgroup> parts: array<vec3f, INVOCATIONS>;
+@compute @workgroup_size(INVOCATIONS)
+fn re_radiate(@builtin(global_invocation_id) id: vec3u) {
+    if (id.x >= COUNT * PARTS) {
+        return;
+    }
+    let out_nm = ${FIRST_NM}.0 + ${STEP_NM}.0 * f32(id.x / PARTS);
+    let m = upglow_look_up(color.rgb);
+    var sum = 0.0;
+    for (var i = id.x % PARTS; i < COUNT; i += PARTS) {
+        if (wavelengths[i].irradiance > 0) {
+            sum += wavelengths[i].irradiance * upglow_reradiation(m, wavelengths[i].nm, out_nm);
+        }
+    }
+    leaving[id.x] = sum;
+}
+
+var<workgroup> sums: array<vec3f, INVOCATIONS>;
 
 fn sum_of(i: u32, part: vec3f) -> vec3f {
-    parts[i] = part;
+    sums[i] = part;
     workgroupBarrier();
     for (var half = INVOCATIONS / 2; half > 0; half /= 2) {
         if (i < half) {
-            parts[i] += parts[i + half];
+            sums[i] += sums[i + half];
         }
         workgroupBarrier();
     }
-    let sum = parts[0];
+    let sum = sums[0];
     workgroupBarrier();
     return sum;
-}
-
-@compute @workgroup_size(INVOCATIONS)
-fn re_radiate(@builtin(workgroup_id) outgoing: vec3u, @builtin(local_invocation_index) i: u32) {
-    var part = vec3f();
-    if (i < COUNT) {
-        let incident = wavelengths[i];
-        let out_nm = ${FIRST_NM}.0 + ${STEP_NM}.0 * f32(outgoing.x);
-        let m = upglow_look_up(color.rgb);
-        part.x = incident.irradiance * upglow_reradiation(m, incident.nm, out_nm);
-    }
-    let sum = sum_of(i, part);
-    if (i == 0) {
-        leaving[outgoing.x] = sum.x;
-    }
 }
 
 @compute @workgroup_size(INVOCATIONS)
@@ -65,7 +72,11 @@ fn see(@builtin(local_invocation_index) i: u32) {
     if (i < COUNT) {
         let m = upglow_look_up(color.rgb);
         reflected = wavelengths[i].weights * upglow_reflectance(m, wavelengths[i].nm);
-        moved = ${STEP_NM}.0 * leaving[i] * wavelengths[i].matching;
+        var sum = 0.0;
+        for (var part = 0u; part < PARTS; part += 1) {
+            sum += leaving[i * PARTS + part];
+        }
+        moved = ${STEP_NM}.0 * sum * wavelengths[i].matching;
     }
     let alone = sum_of(i, reflected);
     let total = alone + sum_of(i, moved);
@@ -133,7 +144,7 @@ fn shade(@builtin(position) place: vec4f) -> @location(0) vec4f {
 const VIEW_FLOATS = 24;
 
 // show: puts a canvas on the page. changed: asks for a draw, as WebGPU came or went. found: is told how far the
-// colors that were read back are from the given ones, over the greatest of those.
+// colors that were read back are from the given ones, over those or white, whichever is greater.
 export function makeGpu(show, changed, found) {
     const canvas = element("canvas", { "aria-hidden": "true" });
     let device = null;
@@ -169,7 +180,7 @@ export function makeGpu(show, changed, found) {
         engine.compute(now, uv);
         try {
             values = await engine.read();
-            const most = Math.max(...colors.flat(), Number.MIN_VALUE);
+            const most = Math.max(...colors.flat(), ...whiteUnder(now.light, uv, now.below));
             const off = colors.flat().map((v, k) => Math.abs(v - values[k]) / most);
             found(Math.max(...off));
         } finally {
@@ -236,7 +247,7 @@ async function makeEngine(device, canvas, cube) {
     const buffer = (floats, usage) => device.createBuffer({ size: 4 * floats, usage });
     const wavelengths = buffer(12 * COARSE, STORAGE | COPY_DST);
     const color = buffer(4, UNIFORM | COPY_DST);
-    const leaving = buffer(COARSE, STORAGE);
+    const leaving = buffer(PARTS * COARSE, STORAGE);
     const seen = buffer(8, STORAGE | UNIFORM | COPY_SRC);
     const answer = buffer(8, MAP_READ | COPY_DST);
     const view = buffer(VIEW_FLOATS, UNIFORM | COPY_DST);
@@ -285,7 +296,7 @@ async function makeEngine(device, canvas, cube) {
             const pass = encoder.beginComputePass();
             groups.forEach((each, k) => pass.setBindGroup(k, each));
             pass.setPipeline(reRadiate);
-            pass.dispatchWorkgroups(COARSE);
+            pass.dispatchWorkgroups(Math.ceil((PARTS * COARSE) / INVOCATIONS));
             pass.setPipeline(see);
             pass.dispatchWorkgroups(1);
             pass.end();
@@ -339,6 +350,12 @@ function texturesOf(device, file) {
             offset += bytesPerRow * height;
             return texture;
         });
+}
+
+// Never 0, so that nothing is divided by it.
+function whiteUnder(light, uv, below) {
+    const white = relit({ reflectance: new Float64Array(FINE).fill(1), response: null }, light, uv, below);
+    return [...white, Number.MIN_VALUE];
 }
 
 // Rows of Wavelength.
