@@ -16,11 +16,11 @@ const MARGIN = 8;
 // More pixels would cost time and show nothing.
 const MOST_RATIO = 2;
 // Shades of the spheres without WebGPU, closer together where it is dark.
-const SHADES = 2048;
+const SHADE_STEPS = 2048;
 
 export function makeSphere(root, app) {
-    const stage = element("div", { class: "stage" });
-    const caption = element("p", { class: "stage-light" });
+    const stage = element("div", { class: "sphere-stage" });
+    const caption = element("p", { class: "sphere-light" });
     const areas = ["total", "reflected"].map(makeArea);
     const both = element("input", { type: "checkbox", id: "sphere-both" });
     both.checked = true;
@@ -138,9 +138,9 @@ function arriving(cosine) {
 
 // The bytes of a color by the square root of the light that arrives.
 function shadesOf(xyz, { factor, light }) {
-    const shades = new Uint8ClampedArray(3 * (SHADES + 1));
-    for (let k = 0; k <= SHADES; k += 1) {
-        const { rgb } = onScreen(scaled(xyz, factor * (k / SHADES) ** 2), light);
+    const shades = new Uint8ClampedArray(3 * (SHADE_STEPS + 1));
+    for (let k = 0; k <= SHADE_STEPS; k += 1) {
+        const { rgb } = onScreen(scaled(xyz, factor * (k / SHADE_STEPS) ** 2), light);
         rgb.forEach((v, channel) => {
             shades[3 * k + channel] = 255 * encoded(v);
         });
@@ -176,7 +176,7 @@ function paintSpheres(context, view, colors) {
                     y /= distance;
                 }
                 const shade = arriving(x * lamp[0] + y * lamp[1] + z * lamp[2]);
-                const from = 3 * Math.min(Math.round(SHADES * Math.sqrt(shade)), SHADES);
+                const from = 3 * Math.min(Math.round(SHADE_STEPS * Math.sqrt(shade)), SHADE_STEPS);
                 const at = 4 * (j * width + i);
                 image.data[at] = shades[from];
                 image.data[at + 1] = shades[from + 1];

@@ -66,7 +66,13 @@ const FLAGS = [
     "--disable-component-update", "--disable-sync",
 ];
 // Chromium's own driver in software, so that machines without a graphics processor have WebGPU.
-const WEBGPU = ["--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader", "--enable-features=Vulkan"];
+// Without the last two it computes, but loses its device when it shows a canvas.
+const WEBGPU = [
+    "--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader", "--enable-features=Vulkan",
+    "--use-vulkan=swiftshader", "--use-angle=swiftshader",
+];
+// Chromium's own words to a page that asks for WebGPU where there is none.
+const NO_WEBGPU = "No available adapters.";
 
 export function openBrowser({ webgpu = false } = {}) {
     const args = [...FLAGS, ...(webgpu ? WEBGPU : ["--disable-gpu"])];
@@ -80,7 +86,7 @@ export async function openPage(browser, address, { width = 1440, height = 1000, 
     const told = [];
     const requests = [];
     page.on("console", (message) => {
-        if (["error", "warning"].includes(message.type())) {
+        if (["error", "warning"].includes(message.type()) && message.text() !== NO_WEBGPU) {
             told.push(message.text());
         }
     });
