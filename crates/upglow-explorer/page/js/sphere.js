@@ -11,8 +11,8 @@ import { makeGpu } from "./gpu.js";
 
 // A second lamp, opposite to the first, has this share of its light, so that the dark side can be read.
 const FILL = 0.12;
-// Pixels of the canvas around a sphere.
-const MARGIN = 8;
+// Pixels beside a sphere, and above and below it, where there are words.
+const MARGIN = [8, 24];
 // More pixels would cost time and show nothing.
 const MOST_RATIO = 2;
 // Shades of the spheres without WebGPU, closer together where it is dark.
@@ -46,10 +46,10 @@ export function makeSphere(root, app) {
     };
     const gpu = makeGpu(show, () => draw(app.now, true), (off) =>
         say(`WebGPU, by the exported WGSL: ${off.toExponential(0)} from double precision.`));
-    // For tests.
-    app.sphere = { gpuXyz: gpu.xyz };
 
     let isVisible = false;
+    // For tests; what is off the screen is not computed.
+    app.sphere = { gpuXyz: () => (isVisible ? gpu.xyz() : null) };
     let drawn = "";
     let light = null;
     const draw = (now, isAnew = false) => {
@@ -65,7 +65,7 @@ export function makeSphere(root, app) {
         }
         drawn = key;
         light = now.light;
-        const radius = Math.min(width / count, height) / 2 - MARGIN * ratio;
+        const radius = Math.min(width / count / 2 - MARGIN[0] * ratio, height / 2 - MARGIN[1] * ratio);
         const lamp = [...state.lamp, Math.sqrt(Math.max(1 - state.lamp[0] ** 2 - state.lamp[1] ** 2, 0))];
         const factor = exposureUnder(light, now);
         const view = { width, height, radius, count, lamp, fill: FILL, factor, light, uv: state.uv };
