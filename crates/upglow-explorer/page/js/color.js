@@ -69,7 +69,7 @@ export const CSS_SPACE = SCREEN === "p3" ? "display-p3" : "srgb";
 // The luminance of the screen's linear RGB.
 export const LUMINANCE = SCREEN === "p3" ? [0.22897, 0.69174, 0.07929] : [0.21264, 0.71517, 0.07219];
 // Channels beyond 0 to 1 by less are so by rounding.
-export const ROUNDING = 1e-4;
+const ROUNDING = 1e-4;
 
 // A color of a light on the screen: linear RGB within 0 to 1, and whether it was outside. A color outside
 // keeps its luminance and hue and becomes as gray as necessary.

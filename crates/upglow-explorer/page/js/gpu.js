@@ -1,6 +1,6 @@
 // WebGPU: the color of a material by the WGSL that the cube is exported as, and spheres of that color.
 
-import { CSS_SPACE, LUMINANCE, ROUNDING, SCREEN } from "./color.js";
+import { CSS_SPACE, LUMINANCE, SCREEN } from "./color.js";
 import { COARSE, FINE, FIRST_NM, STEP_NM, kept, relit } from "./cube.js";
 import { element } from "./dom.js";
 
@@ -109,18 +109,15 @@ fn corner(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
 }
 
 fn on_screen(rgb: vec3f) -> vec3f {
-    if (any(rgb < vec3f(-${ROUNDING})) || any(rgb > vec3f(1 + ${ROUNDING}))) {
-        let gray = clamp(dot(view.luminance, rgb), 0.0, 1.0);
-        let off = rgb - gray;
-        var share = 1.0;
-        for (var k = 0; k < 3; k += 1) {
-            if (off[k] != 0) {
-                share = min(share, select(-gray, 1 - gray, off[k] > 0) / off[k]);
-            }
+    let gray = saturate(dot(view.luminance, rgb));
+    let off = rgb - gray;
+    var share = 1.0;
+    for (var k = 0; k < 3; k += 1) {
+        if (off[k] != 0) {
+            share = min(share, select(-gray, 1 - gray, off[k] > 0) / off[k]);
         }
-        return saturate(gray + share * off);
     }
-    return saturate(rgb);
+    return saturate(gray + share * off);
 }
 
 @fragment
@@ -253,23 +250,21 @@ async function makeEngine(device, canvas, cube) {
     const view = buffer(VIEW_FLOATS, UNIFORM | COPY_DST);
     const textures = texturesOf(device, cube.textures);
 
-    const { COMPUTE, FRAGMENT } = GPUShaderStage;
+    const { COMPUTE } = GPUShaderStage;
     const layout = (entries) => device.createBindGroupLayout({
         entries: entries.map((entry, binding) => ({ binding, ...entry })),
     });
     const group = (its, resources) => device.createBindGroup({
         layout: its, entries: resources.map((resource, binding) => ({ binding, resource })),
     });
-    const typed = (visibility, ...types) => types.map((type) => ({ visibility, buffer: { type } }));
     const cubeLayout = layout(textures.map(() =>
         ({ visibility: COMPUTE, texture: { sampleType: "unfilterable-float" } })));
-    const colorLayout = layout(typed(COMPUTE, "read-only-storage", "uniform", "storage", "storage"));
-    const viewLayout = layout(typed(FRAGMENT, "uniform", "uniform"));
+    const colorLayout = layout(["read-only-storage", "uniform", "storage", "storage"].map((type) =>
+        ({ visibility: COMPUTE, buffer: { type } })));
     const groups = [
         group(cubeLayout, textures.map((texture) => texture.createView())),
         group(colorLayout, [wavelengths, color, leaving, seen].map((each) => ({ buffer: each }))),
     ];
-    const viewGroup = group(viewLayout, [view, seen].map((each) => ({ buffer: each })));
 
     const colors = device.createShaderModule({ code: cube.wgsl + COLOR_WGSL });
     const spheres = device.createShaderModule({ code: SPHERES_WGSL });
@@ -281,11 +276,13 @@ async function makeEngine(device, canvas, cube) {
         colorPipeline("re_radiate"),
         colorPipeline("see"),
         device.createRenderPipelineAsync({
-            layout: device.createPipelineLayout({ bindGroupLayouts: [viewLayout] }),
+            layout: "auto",
             vertex: { module: spheres },
             fragment: { module: spheres, targets: [{ format }] },
         }),
     ]);
+
+    const viewGroup = group(shade.getBindGroupLayout(0), [view, seen].map((each) => ({ buffer: each })));
 
     return {
         cube,
