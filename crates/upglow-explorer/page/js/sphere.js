@@ -15,8 +15,8 @@ const FILL = 0.12;
 const MARGIN = [8, 24];
 // More pixels would cost time and show nothing.
 const MOST_RATIO = 2;
-// Shades of the spheres without WebGPU, closer together where it is dark.
-const SHADE_STEPS = 2048;
+// Shades of the spheres without WebGPU, closer together where it is dark: less than a step of 8 bits apart.
+const SHADE_STEPS = 512;
 
 export function makeSphere(root, app) {
     const stage = element("div", { class: "sphere-stage" });
@@ -50,12 +50,14 @@ export function makeSphere(root, app) {
     let isVisible = false;
     // For tests; what is off the screen is not computed.
     app.sphere = { gpuXyz: () => (isVisible ? gpu.xyz() : null) };
+    // Of the stage. Asking for it in each draw would have the browser lay out the page at once.
+    let size = { width: 0, height: 0 };
     let drawn = "";
     let light = null;
     const draw = (now, isAnew = false) => {
         const ratio = Math.min(devicePixelRatio, MOST_RATIO);
-        const width = Math.round(stage.clientWidth * ratio);
-        const height = Math.round(stage.clientHeight * ratio);
+        const width = Math.round(size.width * ratio);
+        const height = Math.round(size.height * ratio);
         const count = both.checked ? 2 : 1;
         const key = [now.key, state.uv, ...state.lamp, width, height, count].join();
         // A material that is none of the cube's has no key of its own.
@@ -84,7 +86,10 @@ export function makeSphere(root, app) {
         paintSpheres(context, view, colors);
     };
     both.addEventListener("change", () => draw(app.now));
-    new ResizeObserver(() => draw(app.now)).observe(stage);
+    new ResizeObserver(([{ contentRect }]) => {
+        size = contentRect;
+        draw(app.now);
+    }).observe(stage);
     new IntersectionObserver(([entry]) => {
         isVisible = entry.isIntersecting;
         draw(app.now);
