@@ -30,7 +30,8 @@ function ticksTo(top) {
     const step = decade * [1, 2, 5, 10].find((v) => v * decade >= rough * (1 - 1e-9));
     const digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
     const count = Math.floor(top / step + 1e-9);
-    return Array.from({ length: count + 1 }, (_, k) => ({ value: k * step, text: (k * step).toFixed(digits) }));
+    const values = Array.from({ length: count + 1 }, (_, k) => k * step);
+    return values.map((value) => ({ value, text: value.toFixed(digits) }));
 }
 
 // A number with one decimal: places in pixels.
@@ -49,11 +50,81 @@ function widthOf(text) {
     return widths.get(text);
 }
 
+function setAll(node, attributes) {
+    Object.entries(attributes).forEach(([name, value]) => node.setAttribute(name, value));
+    return node;
+}
+
+// Sets custom properties of an element, which its styles read.
+export function colored(node, properties = []) {
+    properties.forEach(([name, value]) => node.style.setProperty(name, value));
+    return node;
+}
+
+const LABEL_HEIGHT = 14;
+// Pixels of a cell in which lines and labels are counted: smaller is slower, larger leaves room unused.
+const CELL = 4;
+// What a label costs that covers a cell of another, in cells of lines.
+const COVERED = 20;
+// What it costs that a label has its short text, in cells of lines.
+const SHORTENED = 32;
+// Below this share of its peak a line is too near to the others at the axis to have its label there.
+const FOOT = 0.15;
+
+// Which cells of a chart have lines or labels in them.
+class Taken {
+    constructor(width, height) {
+        this.height = height;
+        this.columns = Math.ceil(width / CELL);
+        this.cells = new Uint8Array(this.columns * Math.ceil(height / CELL));
+    }
+
+    addLine(from, to, heightAt) {
+        let before = NaN;
+        for (let x = from; x < to; x += CELL) {
+            const y = Math.min(Math.max(heightAt(x), 0), this.height - 1);
+            const other = Number.isNaN(before) ? y : before;
+            const column = Math.floor(x / CELL);
+            const last = Math.floor(Math.max(y, other) / CELL);
+            for (let row = Math.floor(Math.min(y, other) / CELL); row <= last; row += 1) {
+                this.cells[row * this.columns + column] = 1;
+            }
+            before = y;
+        }
+    }
+
+    // Rows and columns of the box of a label: first ones, and ends.
+    #cellsOf(x, y, width) {
+        const [top, left] = [y, x].map((v) => Math.floor(v / CELL));
+        return [top, Math.ceil((y + LABEL_HEIGHT) / CELL), left, Math.ceil((x + width) / CELL)];
+    }
+
+    addBox(x, y, width) {
+        const [top, bottom, left, right] = this.#cellsOf(x, y, width);
+        for (let row = top; row < bottom; row += 1) {
+            this.cells.fill(COVERED, row * this.columns + left, row * this.columns + right);
+        }
+    }
+
+    under(x, y, width) {
+        const [top, bottom, left, right] = this.#cellsOf(x, y, width);
+        let sum = 0;
+        for (let row = top; row < bottom; row += 1) {
+            for (let column = left; column < right; column += 1) {
+                sum += this.cells[row * this.columns + column];
+            }
+        }
+        return sum;
+    }
+}
+
 export class WaveChart {
-    // heightOf: pixels, from the width. onCursor: after the cursor moved, to a wavelength or null. onSize: after
-    // the chart got another size. colors: of the strip under the axis, [{ nm, color, opacity }].
+    // title: of the axis of values, { id, text }. heightOf: pixels, from the width. onCursor: called after
+    // the cursor moved, to a wavelength or null. onSize: called after the chart got another size. colors: of
+    // the strip under the axis, [{ nm, color, opacity }].
     constructor({ label, title, heightOf, onCursor, onSize, colors = [] }) {
-        Object.assign(this, { label, heightOf, onCursor, onSize, width: 0, height: 0, top: 0, nm: null });
+        Object.assign(this, { heightOf, onCursor, onSize, title: title.text });
+        Object.assign(this, { width: 0, height: 0, top: 0, nm: null, dots: [], places: new Map() });
         this.axes = svgElement("g");
         this.plot = svgElement("g", { "clip-path": `url(#${title.id}-clip)` });
         this.marks = svgElement("g");
@@ -63,21 +134,22 @@ export class WaveChart {
         this.strip = svgElement("rect", { height: STRIP, fill: `url(#${title.id}-strip)` });
         const gradient = svgElement("linearGradient", { id: `${title.id}-strip` });
         for (const { nm, color, opacity } of colors) {
-            const stop = svgElement("stop", { offset: (nm - FIRST_NM) / (FINE - 1), "stop-opacity": opacity });
+            const offset = ((nm - FIRST_NM) / (FINE - 1)).toFixed(4);
+            const stop = svgElement("stop", { offset, "stop-opacity": opacity });
             stop.style.setProperty("stop-color", color);
             gradient.append(stop);
         }
         this.svg = svgElement("svg", { "aria-hidden": "true" },
             svgElement("defs", {}, gradient, svgElement("clipPath", { id: `${title.id}-clip` }, this.window)),
             this.axes, this.strip, this.plot, this.marks, this.labels, this.cursor);
-        this.title = title.text;
         this.root = element("div", {
             class: "chart", tabindex: "0", role: "slider", "aria-label": label,
             "aria-valuemin": FIRST_NM, "aria-valuemax": LAST_NM, "aria-valuenow": FIRST_NM,
             "aria-valuetext": "no wavelength chosen",
         }, this.svg);
         this.#listen();
-        new ResizeObserver(([{ contentRect }]) => this.#resize(Math.floor(contentRect.width))).observe(this.root);
+        const resize = ([{ contentRect }]) => this.#resize(Math.floor(contentRect.width));
+        new ResizeObserver(resize).observe(this.root);
     }
 
     #resize(width) {
@@ -86,35 +158,22 @@ export class WaveChart {
         }
         this.width = width;
         this.height = this.heightOf(width);
-        const { svg, window: inner } = this;
-        for (const [name, value] of Object.entries({
-            width, height: this.height, viewBox: `0 0 ${width} ${this.height}`,
-        })) {
-            svg.setAttribute(name, value);
-        }
+        setAll(this.svg, { width, height: this.height, viewBox: `0 0 ${width} ${this.height}` });
         this.right = width - ROOM.right;
         this.bottom = this.height - ROOM.bottom;
         this.perNm = (this.right - ROOM.left) / (FINE - 1);
-        for (const [name, value] of Object.entries({
-            x: ROOM.left, y: ROOM.top, width: this.right - ROOM.left, height: this.bottom - ROOM.top,
-        })) {
-            inner.setAttribute(name, value);
-        }
-        this.strip.setAttribute("x", ROOM.left);
-        this.strip.setAttribute("y", this.bottom + 1);
-        this.strip.setAttribute("width", this.right - ROOM.left);
+        const across = { x: ROOM.left, width: this.right - ROOM.left };
+        setAll(this.window, { ...across, y: ROOM.top, height: this.bottom - ROOM.top });
+        setAll(this.strip, { ...across, y: this.bottom + 1 });
         this.#drawAxes();
         this.onSize();
         this.#drawCursor();
     }
 
-    // Where the axis ends, and whether that changed.
+    // Ends the axis at a value.
     setTop(top) {
-        if (top === this.top) {
-            return;
-        }
-        this.top = top;
-        if (this.width > 0) {
+        if (top !== this.top) {
+            this.top = top;
             this.#drawAxes();
         }
     }
@@ -128,7 +187,7 @@ export class WaveChart {
     }
 
     #drawAxes() {
-        if (this.top === 0) {
+        if (this.top === 0 || this.width === 0) {
             return;
         }
         const parts = [];
@@ -159,11 +218,11 @@ export class WaveChart {
             const value = values[i];
             if (Number.isNaN(value)) {
                 pen = "M";
-                continue;
+            } else {
+                // Far outside the plot a line needs no place, and drawing programs dislike huge numbers.
+                d += `${pen}${px(this.x(FIRST_NM + i * stepNm))} ${px(Math.max(this.y(value), -9999))}`;
+                pen = "L";
             }
-            // Far outside the plot a line needs no place, and drawing programs dislike huge numbers.
-            d += `${pen}${px(this.x(FIRST_NM + i * stepNm))} ${px(Math.max(this.y(value), -9999))}`;
-            pen = "L";
         }
         return d;
     }
@@ -173,100 +232,91 @@ export class WaveChart {
         const held = values.map((value) => (value > level ? value : level));
         const y = px(this.y(level));
         const last = Math.floor((values.length - 1) / every) * every;
-        return `${this.path(held, stepNm, every)}L${px(this.x(FIRST_NM + last * stepNm))} ${y}L${px(this.x(FIRST_NM))} ${y}Z`;
+        const [left, right] = [0, last].map((i) => px(this.x(FIRST_NM + i * stepNm)));
+        return `${this.path(held, stepNm, every)}L${right} ${y}L${left} ${y}Z`;
     }
 
-    // Texts at lines, where few lines cross them: [{ key, text, kind, values, stepNm }] or, at a point, with
-    // `at: [nm, value]`; the first are placed first. A label stays near where it was; one without a good
-    // place is left out. lines: all that are drawn, [{ values, stepNm }].
+    // Texts at lines, where few lines cross them: [{ key, text, short, kind, color, values, stepNm }], best
+    // at nearNm; or at a point, [{ at: [nm, value] }]. The first are placed first. A label stays near where
+    // it was; one without a good place is left out. lines: all that are drawn, [{ values, stepNm }].
     placeLabels(items, lines) {
-        const cell = 4;
-        const columns = Math.ceil(this.width / cell);
-        const rows = Math.ceil(this.height / cell);
-        const taken = new Uint8Array(columns * rows);
-        const yAt = ({ values, stepNm = 1 }, x) => {
-            const place = (x - ROOM.left) / this.perNm / stepNm;
-            return this.y(values[Math.min(Math.max(Math.round(place), 0), values.length - 1)]);
-        };
-        const within = (y) => Math.min(Math.max(y, 0), this.height - 1);
+        const taken = new Taken(this.width, this.height);
         for (const line of lines) {
-            let before = NaN;
-            for (let x = ROOM.left; x < this.right; x += cell) {
-                const y = within(yAt(line, x));
-                if (!Number.isNaN(y)) {
-                    const from = Number.isNaN(before) ? y : before;
-                    for (let r = Math.floor(Math.min(from, y) / cell); r <= Math.max(from, y) / cell; r += 1) {
-                        taken[r * columns + Math.floor(x / cell)] = 1;
-                    }
-                }
-                before = y;
-            }
+            taken.addLine(ROOM.left, this.right, (x) => this.#heightAt(line, x));
         }
-        const boxCost = (x, y, width) => {
-            let sum = 0;
-            for (let r = Math.floor(y / cell); r < (y + 14) / cell; r += 1) {
-                for (let c = Math.floor(x / cell); c < (x + width) / cell; c += 1) {
-                    sum += taken[r * columns + c];
-                }
-            }
-            return sum;
-        };
         // The title has its place already.
-        for (let r = 0; r < 4; r += 1) {
-            taken.fill(20, r * columns, r * columns + Math.ceil(widthOf(this.title) / cell));
+        taken.addBox(0, 0, widthOf(this.title));
+        const placed = new Map();
+        for (const item of items) {
+            const best = this.#bestPlace(item, taken);
+            if (best) {
+                taken.addBox(best.x, best.y, widthOf(best.text));
+                placed.set(item.key, { ...best, item });
+            }
         }
-        this.places ??= new Map();
-        const places = new Map();
-        const texts = items.map((item) => {
-            const width = widthOf(item.text);
-            const before = this.places.get(item.key);
-            let best = { cost: 20 + width / 6 };
+        this.places = placed;
+        this.labels.replaceChildren(...[...placed.values()].map(({ x, y, text, item: { kind, color } }) => {
+            const label = svgElement("text", { x: px(x), y: px(y + 11), class: `label ${kind}` }, text);
+            return colored(label, color);
+        }));
+    }
+
+    // Where a line is at a place across, in pixels.
+    #heightAt({ values, stepNm = 1 }, x) {
+        const index = Math.round((x - ROOM.left) / this.perNm / stepNm);
+        return this.y(values[Math.min(Math.max(index, 0), values.length - 1)]);
+    }
+
+    // The place and the text of a label with the least cost: for lines that cross it, for labels below it,
+    // and for being far from where it should be.
+    #bestPlace(item, taken) {
+        const before = this.places.get(item.key);
+        const longest = widthOf(item.text);
+        // Up to this cost a label is legible.
+        let best = { cost: 20 + longest / 6 };
+        for (const text of [item.text, item.short].filter(Boolean)) {
+            const width = widthOf(text);
             const consider = (x, y, extra) => {
-                if (x < ROOM.left + 2 || x + width > this.right - 2 || y < ROOM.top - 20 || y + 14 > this.bottom - 2) {
+                if (x < ROOM.left + 2 || x + width > this.right - 2 || y < ROOM.top - 20
+                    || y + LABEL_HEIGHT > this.bottom - 2) {
                     return;
                 }
                 const moved = before ? 0.04 * Math.hypot(x - before.x, y - before.y) : 0;
-                const least = extra + Math.min(moved, 12);
-                if (least < best.cost) {
-                    const cost = least + boxCost(x, y, width);
-                    best = cost < best.cost ? { cost, x, y } : best;
+                const least = extra + Math.min(moved, 12) + (text === item.text ? 0 : SHORTENED);
+                const cost = least < best.cost ? least + taken.under(x, y, width) : least;
+                if (cost < best.cost) {
+                    best = { cost, x, y, text };
                 }
             };
-            const around = (x, y, extra) => {
+            this.#offerPlaces(item, width, consider);
+        }
+        return best.text ? best : null;
+    }
+
+    // Calls back with corners of boxes for a label, and what each costs before lines are counted.
+    #offerPlaces(item, width, consider) {
+        const beside = (x, y, gap, extra) => {
+            consider(x + gap, y - 8, extra);
+            consider(x - gap - width, y - 8, extra);
+        };
+        if (item.at) {
+            const [x, y] = [this.x(item.at[0]), this.y(item.at[1])];
+            for (const dy of [0, 16, -16, 32, -32, 48, -48]) {
+                beside(x, y + dy, 14, Math.abs(dy) / 6);
+            }
+            return;
+        }
+        const peak = item.values.reduce((most, v) => (v > most ? v : most), 1e-9);
+        for (let x = ROOM.left + 4; x < this.right; x += 8) {
+            const y = this.#heightAt(item, x);
+            const share = ((this.bottom - y) / (this.bottom - ROOM.top)) * (this.top / peak);
+            if (y >= ROOM.top - 2 && share > FOOT) {
+                const extra = item.nearNm ? Math.abs(x - this.x(item.nearNm)) / 30 : 14 * (1 - share);
                 consider(x - width / 2, y - 18, extra);
-                consider(x + 8, y - 8, extra + 1);
-                consider(x - 8 - width, y - 8, extra + 1);
                 consider(x - width / 2, y + 4, extra + 2);
-            };
-            if (item.at) {
-                const [x, y] = [this.x(item.at[0]), this.y(item.at[1])];
-                for (const dy of [0, 16, -16, 32, -32, 48, -48]) {
-                    consider(x + 14, y + dy - 8, Math.abs(dy) / 6);
-                    consider(x - 14 - width, y + dy - 8, Math.abs(dy) / 6 + 1);
-                }
-            } else {
-                // At its foot a line is hard to tell from others.
-                const peak = item.values.reduce((most, v) => (v > most ? v : most), 1e-9);
-                for (let x = ROOM.left + 4; x < this.right; x += 8) {
-                    const y = yAt(item, x);
-                    if (y >= ROOM.top - 2) {
-                        around(x, y, 14 * (1 - ((this.bottom - y) / (this.bottom - ROOM.top)) * (this.top / peak)));
-                    }
-                }
+                beside(x, y, 8, extra + 1);
             }
-            if (best.x === undefined) {
-                return null;
-            }
-            places.set(item.key, best);
-            for (let r = Math.floor(best.y / cell); r < (best.y + 14) / cell; r += 1) {
-                taken.fill(20, r * columns + Math.floor(best.x / cell), r * columns + Math.ceil((best.x + width) / cell));
-            }
-            const text = svgElement("text", { x: px(best.x), y: px(best.y + 11), class: `label ${item.kind}` }, item.text);
-            item.color?.forEach(([name, value]) => text.style.setProperty(name, value));
-            return text;
-        });
-        this.places = places;
-        this.labels.replaceChildren(...texts.filter(Boolean));
+        }
     }
 
     // Moves the cursor to a wavelength, or takes it away.
@@ -285,7 +335,7 @@ export class WaveChart {
         this.root.setAttribute("aria-valuetext", this.nm === null ? "no wavelength chosen" : text);
     }
 
-    // Dots where the cursor meets lines: [{ value, kind, color }].
+    // Dots where the cursor meets lines: [{ value, kind }].
     showDots(dots) {
         this.dots = dots;
         this.#drawCursor();
@@ -300,15 +350,12 @@ export class WaveChart {
         const text = `${this.nm} nm`;
         const half = widthOf(text) / 2 + 4;
         const middle = Math.min(Math.max(x, ROOM.left + half), this.right - half);
-        const dots = (this.dots ?? []).filter(({ value }) => value >= 0 && value <= this.top).map((dot) => {
-            const circle = svgElement("circle", { cx: x, cy: px(this.y(dot.value)), r: 3, class: `dot ${dot.kind}` });
-            dot.color?.forEach(([name, value]) => circle.style.setProperty(name, value));
-            return circle;
-        });
+        const dots = this.dots.filter(({ value }) => value >= 0 && value <= this.top).map(({ value, kind }) =>
+            svgElement("circle", { cx: x, cy: px(this.y(value)), r: 3, class: `dot ${kind}` }));
         this.cursor.replaceChildren(
             svgElement("path", { d: `M${x} ${ROOM.top}V${this.bottom}`, class: "hair" }),
-            svgElement("rect", {
-                x: px(middle - half), y: this.bottom + 8, width: px(2 * half), height: 18, rx: 4, class: "flag",
+            setAll(svgElement("rect", { height: 18, rx: 4, class: "flag" }), {
+                x: px(middle - half), y: this.bottom + 8, width: px(2 * half),
             }),
             svgElement("text", { x: px(middle), y: this.bottom + 21, class: "flag-text" }, text),
             ...dots,
@@ -359,14 +406,21 @@ export function csvOf(names, rows) {
     return `${[quoted, ...rows.map((row) => row.map(number))].map((row) => row.join(",")).join("\n")}\n`;
 }
 
-const COPIED = ["fill", "fill-opacity", "stroke", "stroke-width", "stroke-dasharray", "stroke-opacity", "stroke-linecap",
-    "stroke-linejoin", "paint-order", "opacity", "font-size", "font-weight", "text-anchor", "stop-color"];
-const COLORED = ["fill", "stroke", "stop-color"];
+// Properties that a saved drawing needs, each with the value that it has anyway.
+const COPIED = {
+    fill: "", stroke: "none", "fill-opacity": "1", "stroke-opacity": "1", "stroke-width": "1px",
+    "stroke-dasharray": "none", "stroke-linecap": "butt", "stroke-linejoin": "miter", "paint-order": "normal",
+    opacity: "1", "text-anchor": "start", "font-size": "14px",
+};
+// Pixels of white around a saved drawing.
+const PAPER = 12;
+const COPIED_OF_STOPS = { "stop-color": "" };
 
 // A drawing by itself: in the light colors, with all styles as attributes that any drawing program reads.
 export function standaloneSvg(svg, title) {
     const copy = svg.cloneNode(true);
-    const stage = element("div", { class: "stage" }, copy);
+    copy.querySelector(".cursor").remove();
+    const stage = element("div", { class: "chart stage" }, copy);
     document.body.append(stage);
     const paint = element("canvas", { width: 1, height: 1 }).getContext("2d", { willReadFrequently: true });
     const plain = (color) => {
@@ -381,14 +435,10 @@ export function standaloneSvg(svg, title) {
     };
     for (const node of copy.querySelectorAll("path, rect, text, circle, stop")) {
         const style = getComputedStyle(node);
-        if (style.display === "none") {
-            node.remove();
-            continue;
-        }
-        const values = COPIED.map((name) => [name, style.getPropertyValue(name)]);
-        for (const [name, value] of values) {
-            if (value !== "" && value !== "normal" && (name !== "stop-color" || node.tagName === "stop")) {
-                node.setAttribute(name, COLORED.includes(name) ? plain(value) : value);
+        for (const [name, usual] of Object.entries(node.tagName === "stop" ? COPIED_OF_STOPS : COPIED)) {
+            const value = style.getPropertyValue(name);
+            if (value !== usual) {
+                node.setAttribute(name, /fill$|stroke$|color$/.test(name) ? plain(value) : value);
             }
         }
     }
@@ -398,7 +448,11 @@ export function standaloneSvg(svg, title) {
     }
     copy.removeAttribute("aria-hidden");
     copy.setAttribute("font-family", "Helvetica, Arial, sans-serif");
-    copy.prepend(svgElement("title", {}, title), svgElement("rect", { width: "100%", height: "100%", fill: "#ffffff" }));
+    const { width, height } = svg.viewBox.baseVal;
+    const around = { width: width + 2 * PAPER, height: height + 2 * PAPER };
+    setAll(copy, { ...around, viewBox: `${-PAPER} ${-PAPER} ${around.width} ${around.height}` });
+    const paper = svgElement("rect", { x: -PAPER, y: -PAPER, ...around, fill: "#ffffff" });
+    copy.prepend(svgElement("title", {}, title), paper);
     stage.remove();
     return new XMLSerializer().serializeToString(copy);
 }

@@ -12,7 +12,7 @@ const LIGHTNESSES = { light: [97, 18], dark: [17, 97] };
 const HUE = 302;
 const CHROMA = 72;
 // The map's axis ends at least here, 1/nm.
-const LEAST_TOP = 0.002;
+const LEAST_TOP = 0.005;
 // Light of so large a share of what a row sends is between the wavelengths that the text names.
 const NAMED_SHARE = 0.9;
 
@@ -26,10 +26,11 @@ export function makeHeat(root, app) {
     const canvas = element("canvas", { width: COARSE, height: COARSE });
     const overlay = svgElement("svg", { "aria-hidden": "true" });
     const hairs = svgElement("path", { class: "hair" });
-    const empty = element("p", { class: "map-empty" }, "This material does not fluoresce: light keeps its wavelength.");
+    const empty = element("p", { class: "map-empty" },
+        "This material does not fluoresce: light keeps its wavelength.");
     const map = element("div", {
         class: "map", tabindex: "0", role: "application",
-        "aria-label": "Re-radiation: incident wavelength down, emitted across; arrow keys move, with Shift faster",
+        "aria-label": "Re-radiation: incident wavelength down, emitted across; arrow keys move, Shift faster",
     }, canvas, overlay, empty);
     const bar = element("canvas", { width: SHADES, height: 1 });
     const barTexts = [0, 1, 2].map(() => element("span"));
@@ -75,22 +76,29 @@ export function makeHeat(root, app) {
 
     function drawAxes() {
         const { left, above } = ROOM_OF_MAP;
-        const words = (x, y, kind, content) => svgElement("text", { x: px(x), y: px(y), class: kind }, content);
-        const parts = [words(0, 12, "", "incident (nm)"), words(left + side / 2, above + side + 34, "middle", "emitted (nm)")];
+        const words = (x, y, kind, content) =>
+            svgElement("text", { x: px(x), y: px(y), class: kind }, content);
+        const [right, below] = [left + side, above + side];
+        const parts = [
+            words(0, 12, "", "incident (nm)"),
+            words(left + side / 2, below + 34, "middle", "emitted (nm)"),
+        ];
         for (let nm = FIRST_NM; nm <= LAST_NM; nm += 100) {
             const along = ((nm - FIRST_NM) / (LAST_NM - FIRST_NM + STEP_NM)) * side + side / COARSE / 2;
-            parts.push(words(left - 6, above + along + 4, "end", nm), words(left + along, above + side + 17, "middle", nm));
-            parts.push(svgElement("path", {
-                d: `M${left - 4} ${px(above + along)}h4M${px(left + along)} ${px(above + side)}v4`, class: "grid",
-            }));
+            const [x, y] = [px(left + along), px(above + along)];
+            parts.push(
+                words(left - 6, y + 4, "end", nm),
+                words(x, below + 17, "middle", nm),
+                svgElement("path", { d: `M${left - 4} ${y}h4M${x} ${below}v4`, class: "grid" }),
+            );
         }
-        const middle = side * 0.3;
+        // Below the diagonal, at the end where dyes seldom absorb.
+        const middle = side * 0.68;
+        const turned = `translate(${px(left + middle - 6)} ${px(above + middle + 14)}) rotate(45)`;
         parts.push(
             svgElement("rect", { x: left, y: above, width: side, height: side, class: "frame" }),
-            svgElement("path", { d: `M${left} ${above}l${side} ${side}`, class: "diagonal" }),
-            svgElement("text", {
-                transform: `translate(${px(left + middle - 6)} ${px(above + middle + 14)}) rotate(45)`, class: "middle",
-            }, "reflected: same wavelength"),
+            svgElement("path", { d: `M${left} ${above}L${right} ${below}`, class: "diagonal" }),
+            svgElement("text", { transform: turned, class: "middle" }, "reflected: same wavelength"),
         );
         overlay.replaceChildren(...parts, hairs);
         drawHairs();
@@ -134,7 +142,7 @@ export function makeHeat(root, app) {
     }
 
     const rowNow = () => (at ? at[0] : shown.strongest);
-    const valuesOf = (row) => shown.sampled.moved?.subarray(row * COARSE, (row + 1) * COARSE) ?? NOTHING;
+    const valuesOf = (row) => shown.sampled.moved?.slice(row * COARSE, (row + 1) * COARSE) ?? NOTHING;
 
     function drawRow() {
         const values = valuesOf(rowNow());
@@ -142,8 +150,10 @@ export function makeHeat(root, app) {
         const nm = wholeNm(rowNow());
         const reflected = shown.sampled.reflectance[nm - FIRST_NM];
         const { sum, from, to } = spreadOf(values);
-        const back = sum > 5e-4 ? `comes back at ${from} to ${to} nm` : "comes back at other wavelengths";
-        text.textContent = `Of light at ${nm} nm: ${percent(sum)} ${back}, ${percent(reflected)} is reflected.`;
+        const back = sum > 5e-4
+            ? `comes back, most of it at ${from} to ${to} nm` : "comes back at other wavelengths";
+        const came = `Of light at ${nm} nm: ${percent(sum)} ${back}`;
+        text.textContent = `${came}; ${percent(reflected)} is reflected.`;
         if (chart.width > 0) {
             area.setAttribute("d", chart.area(values, 0, STEP_NM));
             line.setAttribute("d", chart.path(values, STEP_NM));
@@ -158,7 +168,8 @@ export function makeHeat(root, app) {
         }
         const column = chart.nm === null ? null : Math.round((chart.nm - FIRST_NM) / STEP_NM);
         const value = column === null ? null : valuesOf(rowNow())[column];
-        cell.textContent = column === null ? "" : `${wholeNm(rowNow())} nm → ${wholeNm(column)} nm: ${value.toFixed(5)}/nm`;
+        cell.textContent = column === null
+            ? "" : `${wholeNm(rowNow())} nm → ${wholeNm(column)} nm: ${value.toFixed(5)}/nm`;
         chart.say(cell.textContent);
         chart.showDots(value === null ? [] : [{ value, kind: "total" }]);
     }
@@ -212,7 +223,7 @@ export function makeHeat(root, app) {
 }
 
 const NOTHING = new Float64Array(COARSE);
-export const percent = (share) => `${(100 * share).toFixed(1)} %`;
+export const percent = (share) => `${(100 * share).toFixed(1)}\u00a0%`;
 
 // The greatest value, and the row that sends the most.
 function mostOf(moved) {

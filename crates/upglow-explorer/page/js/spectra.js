@@ -4,20 +4,20 @@ import { multiply, SCREEN, cssColor } from "./color.js";
 import { state } from "./state.js";
 import { COARSE, FINE, FIRST_NM, STEP_NM, kept, radianceFactor } from "./cube.js";
 import { element, svgElement } from "./dom.js";
-import { WaveChart, csvOf, download, px, standaloneSvg, steppedTop } from "./chart.js";
+import { WaveChart, colored, csvOf, download, px, standaloneSvg, steppedTop } from "./chart.js";
 
 // The switches: what is drawn, how it is called in the list and at its line.
 const CURVES = [
     { key: "total", name: "Total", label: "total radiance factor" },
     { key: "reflectance", name: "Reflectance", label: "reflectance" },
     { key: "base", name: "Base", label: "base reflectance" },
-    { key: "slope", name: "Steepest slope", label: "" },
-    { key: "passed", name: "Film lets through", label: "what the film lets through" },
-    { key: "absorbed", name: "Dyes absorb", label: "" },
-    { key: "emitted", name: "Dyes emit", label: "emission" },
+    { key: "slope", name: "Slope", label: "steepest slope of the base reflectance" },
+    { key: "passed", name: "Film passes", label: "what the film lets through" },
+    { key: "absorbed", name: "Dyes absorb", label: "what each dye absorbs" },
+    { key: "emitted", name: "Dyes emit", label: "emission of each dye" },
     { key: "light", name: "Light", label: "light" },
     { key: "leaving", name: "Light leaving", label: "light leaving" },
-    { key: "before", name: "Cube before", label: "before" },
+    { key: "before", name: "Before", label: "cube before" },
 ];
 // Samples of lines in the list that are not a straight one.
 const SAMPLES_OF = {
@@ -28,13 +28,14 @@ const SAMPLES_OF = {
 const EMISSION_AT_1 = 0.04;
 // Dyes of smaller doses are drawn fainter: a blend of nodes often has traces of some.
 const FULL_DOSE = 0.05;
+const LARGER = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
 // Dyes that have a row of their own under the chart; the others share the row below.
 const DYE_ROWS = 3;
 // The axis ends at what is seen: at its ends a light may be so dim that any emission exceeds it.
 const SEEN_NM = [390, 730];
 
 const atNm = (nm) => nm - FIRST_NM;
-const written = (value, digits = 3) => (Number.isNaN(value) || value === null ? "–" : value.toFixed(digits));
+const written = (value) => (Number.isNaN(value) || value === null ? "–" : value.toFixed(3));
 
 export function makeSpectra(root, app) {
     // What the user switched; light that leaves is shown by itself only where radiance factors say little.
@@ -53,13 +54,11 @@ export function makeSpectra(root, app) {
     const over = chart.plot.appendChild(svgElement("path", { class: "over" }));
     const lines = new Map();
     const dyeLayer = svgElement("g");
-    for (const key of ["light", "leaving"]) {
-        lines.set(key, chart.plot.appendChild(svgElement("path", { class: `curve ${key}` })));
-    }
+    const addLines = (...keys) => keys.forEach((key) =>
+        lines.set(key, chart.plot.appendChild(svgElement("path", { class: `curve ${key}` }))));
+    addLines("light", "leaving");
     chart.plot.append(dyeLayer);
-    for (const key of ["passed", "base", "before-reflectance", "before-total", "total", "reflectance", "slope"]) {
-        lines.set(key, chart.plot.appendChild(svgElement("path", { class: `curve ${key}` })));
-    }
+    addLines("passed", "base", "before-reflectance", "before-total", "total", "reflectance", "slope");
     const oneLine = chart.marks.appendChild(svgElement("path", { class: "one" }));
 
     const keys = element("div", { class: "keys", role: "group", "aria-label": "Lines shown" });
@@ -68,7 +67,8 @@ export function makeSpectra(root, app) {
         const value = element("span", { class: "value", "aria-hidden": "true" });
         const sample = svgElement("svg", { viewBox: "0 0 20 8", class: "sample", "aria-hidden": "true" },
             svgElement("path", SAMPLES_OF[key] ?? { d: "M0 4H20", class: `curve ${key}` }));
-        const button = element("button", { type: "button", title: label }, sample, name, value);
+        const button = element("button", { type: "button", title: label },
+            sample, element("span", {}, name), value);
         button.addEventListener("click", () => {
             chosen.set(key, !isOn(key));
             drawLines();
@@ -89,7 +89,8 @@ export function makeSpectra(root, app) {
         const title = `Spectra of ${space} ${value.join(", ")} under ${shown.light.name}`;
         download(`${fileName()}.svg`, "image/svg+xml", standaloneSvg(chart.svg, title));
     });
-    root.append(element("div", { class: "head" }, root.querySelector("h2"), csv, svg), chart.root, keys, table.root);
+    const head = element("div", { class: "head" }, root.querySelector("h2"), csv, svg);
+    root.append(head, chart.root, keys, table.root);
 
     const fileName = () => ["spectra", state.space, ...state.value, shown.light.name].join("-")
         .replaceAll(/[^A-Za-z0-9.-]+/g, "_");
@@ -102,10 +103,10 @@ export function makeSpectra(root, app) {
             { key: "reflectance", values: sampled.reflectance },
         ];
         if (sampled.fluoresces) {
-            list.push({ key: "base", values: sampled.base });
+            list.push({ key: "base", values: shown.base });
             list.push({ key: "passed", values: sampled.passed });
         }
-        list.push({ key: "leaving", values: factor.leaving, stepNm: STEP_NM });
+        list.push({ key: "leaving", values: shown.leaving, stepNm: STEP_NM });
         list.push({ key: "light", values: power });
         if (before) {
             list.push({ key: "before", line: "before-total", values: before.total, stepNm: STEP_NM });
@@ -152,9 +153,7 @@ export function makeSpectra(root, app) {
         for (const dye of shown.dyes) {
             const paint = (d, kind) => {
                 const path = svgElement("path", { d, class: `${kind} ${dye.kind}` });
-                dye.color.forEach(([name, value]) => path.style.setProperty(name, value));
-                path.style.setProperty("--faint", Math.min(dye.dose / FULL_DOSE, 1));
-                parts.push(path);
+                parts.push(colored(path, [...dye.color, ["--faint", Math.min(dye.dose / FULL_DOSE, 1)]]));
             };
             if (isOn("absorbed")) {
                 paint(chart.area(dye.absorbed, 0, 1, 3), "absorbed");
@@ -172,20 +171,22 @@ export function makeSpectra(root, app) {
         if (Math.abs(perNm) < 5e-5) {
             return null;
         }
-        const value = (shown.sampled.base[atNm(Math.floor(nm))] + shown.sampled.base[atNm(Math.ceil(nm))]) / 2;
+        const { base } = shown;
+        const value = (base[atNm(Math.floor(nm))] + base[atNm(Math.ceil(nm))]) / 2;
         const across = chart.x(nm + 1) - chart.x(nm);
         const down = chart.y(value + perNm) - chart.y(value);
         const reach = 24 / Math.hypot(across, down);
         const [x, y] = [chart.x(nm), chart.y(value)];
-        lines.get("slope").setAttribute("d",
-            `M${px(x - reach * across)} ${px(y - reach * down)}L${px(x + reach * across)} ${px(y + reach * down)}`);
+        const end = (side) => `${px(x + side * reach * across)} ${px(y + side * reach * down)}`;
+        lines.get("slope").setAttribute("d", `M${end(-1)}L${end(1)}`);
         return [nm, value];
     }
 
     function drawLabels(drawn, slope) {
         const labelOf = new Map(CURVES.map(({ key, label }) => [key, label]));
         const items = drawn.map((curve) => ({
-            ...curve, key: curve.line ?? curve.key, text: labelOf.get(curve.key), kind: curve.key,
+            ...curve, key: curve.line ?? curve.key, kind: curve.key,
+            text: curve.key === "leaving" ? shown.leavingText : labelOf.get(curve.key),
         })).filter(({ key }) => key !== "before-reflectance");
         // Without dyes the two are the same line, which has one label.
         const isOne = !shown.sampled.fluoresces && isOn("reflectance");
@@ -196,21 +197,27 @@ export function makeSpectra(root, app) {
         const drawnLines = drawn.map(({ values: v, stepNm }) => ({ values: v, stepNm }));
         for (const dye of shown.dyes.filter(({ dose }) => dose >= FULL_DOSE)) {
             if (isOn("absorbed")) {
-                named.splice(2, 0, { key: `${dye.name} a`, text: `${dye.name}, ${dye.doseText}`, kind: dye.kind,
-                    color: dye.color, values: dye.absorbed });
+                named.splice(2, 0, {
+                    key: `${dye.name} a`, text: `${dye.name}, ${shown.doseName} ${dye.dose.toFixed(2)}`,
+                    short: dye.name, kind: dye.kind, color: dye.color, values: dye.absorbed,
+                });
                 drawnLines.push({ values: dye.absorbed });
             }
             if (isOn("emitted")) {
                 const scaled = dye.emission.map((v) => v / EMISSION_AT_1);
-                named.push({ key: `${dye.name} e`, text: `emission (1 is ${EMISSION_AT_1}/nm)`, kind: dye.kind,
-                    color: dye.color, values: scaled });
+                named.push({
+                    key: `${dye.name} e`, text: `emission (1 is ${EMISSION_AT_1}/nm)`,
+                    short: "emission", kind: dye.kind, color: dye.color, values: scaled,
+                });
                 drawnLines.push({ values: scaled });
             }
         }
         if (slope) {
-            named.splice(1, 0, { key: "slope", text: shown.slopeText, kind: "slope", at: slope });
+            const [short] = shown.slopeText.split(" under");
+            named.splice(1, 0, { key: "slope", text: shown.slopeText, short, kind: "slope", at: slope });
         }
-        const one = { key: "one", text: "1: as much as arrives", kind: "light", values: [1, 1], stepNm: FINE };
+        const one = { values: [1, 1], stepNm: FINE, nearNm: 770, key: "one", kind: "one-label" };
+        one.text = "1: as much as arrives";
         named.splice(1, 0, one);
         drawnLines.push(one);
         chart.placeLabels(named, drawnLines);
@@ -221,9 +228,10 @@ export function makeSpectra(root, app) {
         const { nm } = chart;
         const { sampled, factor, power, before, steepest } = shown;
         const coarse = nm === null ? 0 : Math.round(atNm(nm) / STEP_NM);
-        const at = (list) => (nm === null || !list ? null : list.length === COARSE ? list[coarse] : list[atNm(nm)]);
+        const valueOf = (list) => (list.length === COARSE ? list[coarse] : list[atNm(nm)]);
+        const at = (list) => (nm === null || !list ? null : valueOf(list));
         const found = {
-            total: at(factor.total), reflectance: at(sampled.reflectance), base: at(sampled.base),
+            total: at(factor.total), reflectance: at(sampled.reflectance), base: at(shown.base),
             passed: at(sampled.passed ?? null), light: at(power), leaving: at(factor.leaving),
             before: at(before?.total),
         };
@@ -232,21 +240,23 @@ export function makeSpectra(root, app) {
         }
         values.get("slope").textContent = Math.abs(steepest.perNm).toFixed(4);
         table.draw(shown, nm === null ? null : atNm(nm));
-        const names = { total: "total", reflectance: "reflectance", passed: "film lets through", light: "light" };
-        const words = Object.entries(names).filter(([key]) => found[key] !== null && isOn(key))
-            .map(([key, name]) => `${name} ${written(found[key])}`);
+        const words = CURVES.filter(({ key }) => (found[key] ?? null) !== null && isOn(key))
+            .map(({ key, label }) => `${label} ${written(found[key])}`);
         const dyes = nm === null ? [] : shown.dyes.slice(0, DYE_ROWS)
             .map((dye) => `${dye.name} absorbs ${written(dye.absorbed[atNm(nm)])}`);
         chart.say(`${nm} nm: ${[...words, ...dyes].join(", ")}`);
-        const dots = nm === null ? [] : curves().map((curve) => ({ value: at(curve.values), kind: curve.key }));
-        chart.showDots(dots);
+        const dots = () => curves().map((curve) => ({ value: at(curve.values), kind: curve.key }));
+        chart.showDots(nm === null ? [] : dots());
     }
 
     // What is on screen at every nanometer; radiance factors only where they are computed.
     function asCsv() {
-        const columns = curves().map(({ key, line, values: v, stepNm = 1 }) => ({
-            name: columnName(line ?? key), valueAt: (i) => (i % stepNm === 0 ? v[i / stepNm] : null),
-        }));
+        const columns = curves().map(({ key, line, values: v, stepNm = 1 }) => {
+            // Not as it is drawn, perhaps larger.
+            const all = key === "leaving" ? shown.factor.leaving : v;
+            const valueAt = (i) => (i % stepNm === 0 ? all[i / stepNm] : null);
+            return { name: COLUMNS[line ?? key] ?? key, valueAt };
+        });
         for (const dye of shown.dyes) {
             if (isOn("absorbed")) {
                 columns.push({ name: `absorbed by ${dye.name}`, valueAt: (i) => dye.absorbed[i] });
@@ -255,7 +265,8 @@ export function makeSpectra(root, app) {
                 columns.push({ name: `emission of ${dye.name} per nm`, valueAt: (i) => dye.emission[i] });
             }
         }
-        const rows = Array.from({ length: FINE }, (_, i) => [FIRST_NM + i, ...columns.map(({ valueAt }) => valueAt(i))]);
+        const row = (i) => [FIRST_NM + i, ...columns.map(({ valueAt }) => valueAt(i))];
+        const rows = Array.from({ length: FINE }, (_, i) => row(i));
         return csvOf(["wavelength_nm", ...columns.map(({ name }) => name)], rows);
     }
 
@@ -278,7 +289,6 @@ const COLUMNS = {
     light: "light_relative_power", leaving: "light_leaving_relative_power",
     "before-total": "before_total_radiance_factor", "before-reflectance": "before_reflectance",
 };
-const columnName = (key) => COLUMNS[key] ?? key;
 
 function peakSeen(values, stepNm) {
     const [from, to] = SEEN_NM.map((nm) => atNm(nm) / stepNm);
@@ -292,31 +302,33 @@ function describe(now, key) {
     const power = Float64Array.from(light.power, (v, i) => v * kept(FIRST_NM + i, state.uv, below));
     const seen = factor.total.slice(atNm(400) / STEP_NM, atNm(700) / STEP_NM + 1);
     const isDark = seen.filter((v) => Number.isNaN(v)).length > seen.length / 2;
-    const dyes = sampled.dyes.map((dye) => ({ ...dye, ...doseOf(dye, cube), ...dyeColor(dye, cube) }));
-    const steepest = steepestOf(sampled.base);
-    const other = now.otherSampled
-        ? { total: radianceFactor(now.otherSampled, light, state.uv, below).total, reflectance: now.otherSampled.reflectance }
-        : null;
+    // Under a lamp of ultraviolet, what is sent out is faint beside the lamp: it is drawn larger.
+    const faint = peakSeen(factor.leaving, STEP_NM);
+    const scale = isDark ? LARGER.findLast((by) => by * faint <= 1) ?? 1 : 1;
+    const dyes = sampled.dyes.map((dye) => ({ ...dye, ...dyeColor(dye, cube) }));
+    const base = sampled.base ?? sampled.reflectance;
+    const steepest = steepestOf(base);
+    const before = now.otherSampled && {
+        total: radianceFactor(now.otherSampled, light, state.uv, below).total,
+        reflectance: now.otherSampled.reflectance,
+    };
     const absent = new Set(sampled.fluoresces ? [] : ["base", "passed", "absorbed", "emitted"]);
     if (!sampled.passed) {
         absent.add("passed");
     }
     return {
-        key, cube, sampled, light, factor, power, isDark, dyes, steepest, absent,
-        before: other,
+        key, cube, sampled, base, light, factor, power, isDark, dyes, steepest, absent,
+        leaving: factor.leaving.map((v) => scale * v),
+        leavingText: scale > 1 ? `light leaving × ${scale}` : "light leaving",
+        before,
         otherSampled: now.otherSampled,
-        slopeText: slopeText(Math.abs(steepest.perNm), sampled.fluoresces, cube.meta.fit),
-        summary: summaryOf(now, isDark),
+        slopeText: slopeText(Math.abs(steepest.perNm), now),
+        doseName: doseName(cube),
     };
 }
 
-function summaryOf({ sampled, cube }) {
-    return sampled.fluoresces || cube.meta.dyes.length === 0 ? "" : "No dye is needed: a reflectance shows this color.";
-}
-
-function doseOf(dye, cube) {
-    return { doseText: `${cube.meta.model === "film" ? "optical density" : "concentration"} ${dye.dose.toFixed(2)}` };
-}
+// How much there is of dyes, in the words of the cube's model.
+const doseName = (cube) => (cube.meta.model === "film" ? "optical density" : "concentration");
 
 // A dye has the hue of what it emits; neighbors among the cube's dyes differ in lightness.
 function dyeColor(dye, cube) {
@@ -345,8 +357,9 @@ function steepestOf(values) {
     return best;
 }
 
-// A slope and its limit. Between nodes with and without dyes the limit is that of both.
-function slopeText(perNm, fluoresces, { slope_max_per_nm: alone, slope_under_dyes_per_nm: underDyes, relaxed }) {
+// A slope and its limit. Between nodes with and without dyes the limit is the greater one.
+function slopeText(perNm, { sampled: { fluoresces }, cube, shown }) {
+    const { slope_max_per_nm: alone, slope_under_dyes_per_nm: underDyes } = cube.meta.fit;
     const slope = perNm.toFixed(4);
     // The curve is sampled by 1 nm and rounded.
     const isWithin = (limit) => limit !== null && perNm <= limit * (1 + 1e-3);
@@ -356,7 +369,9 @@ function slopeText(perNm, fluoresces, { slope_max_per_nm: alone, slope_under_dye
     if (isWithin(alone)) {
         return `${slope} of at most ${alone} per nm`;
     }
-    return alone !== null && relaxed ? `${slope} per nm: steeper than ${alone}, as nothing else matched` : `${slope} per nm`;
+    // A material that is none of the cube's need not keep to its limits.
+    const isOther = alone === null || shown;
+    return isOther ? `${slope} per nm` : `${slope} per nm: above ${alone}, as nothing else matched`;
 }
 
 // Colors of light by wavelength, as strong as the screen shows them, and fading where they are hardly seen.
@@ -387,7 +402,8 @@ function makeDyeTable() {
             svgElement("rect", { width: 12, height: 12, rx: 3 }));
         const name = element("span", { class: "dye-name" });
         const cells = [0, 1, 2].map(() => element("td", { class: "number-cell" }));
-        return { row: element("tr", {}, element("td", {}, element("div", {}, sample, name)), ...cells), sample, name, cells };
+        const row = element("tr", {}, element("td", {}, element("div", {}, sample, name)), ...cells);
+        return { row, sample, name, cells };
     });
     const table = element("table", { class: "dyes" },
         element("thead", {}, element("tr", {}, ...heads)),
@@ -399,26 +415,28 @@ function makeDyeTable() {
             cell.textContent = numbers[k] ?? "";
         });
         sample.setAttribute("class", dye ? `dye-sample ${dye.kind}` : "dye-sample none");
-        dye?.color.forEach(([property, value]) => sample.style.setProperty(property, value));
+        colored(sample, dye?.color);
     };
     return {
         root: table,
-        draw({ dyes, cube, summary }, at) {
-            heads[1].textContent = cube.meta.model === "film" ? "optical density" : "concentration";
+        draw({ dyes, doseName: name }, at) {
+            heads[1].textContent = name;
             const isAll = dyes.length <= rows.length;
             const own = isAll ? dyes : dyes.slice(0, DYE_ROWS);
             const rest = isAll ? [] : dyes.slice(DYE_ROWS);
             rows.forEach((row, k) => {
                 const dye = own[k];
                 if (dye) {
-                    const numbers = at === null ? [] : [dye.absorbed[at].toFixed(3), dye.emission[at].toFixed(4)];
-                    fill(row, dye.name, [dye.dose < 5e-4 ? "< 0.001" : dye.dose.toFixed(3), ...numbers], dye);
+                    const dose = dye.dose < 5e-4 ? "< 0.001" : dye.dose.toFixed(3);
+                    const [absorbed, emitted] = at === null ? ["", ""]
+                        : [dye.absorbed[at].toFixed(3), dye.emission[at].toFixed(4)];
+                    fill(row, dye.name, [dose, absorbed, emitted], dye);
                 } else if (k === own.length && rest.length > 0) {
-                    const dose = rest.reduce((sum, one) => sum + one.dose, 0);
-                    const absorbed = at === null ? "" : rest.reduce((sum, one) => sum + one.absorbed[at], 0).toFixed(3);
-                    fill(row, `${rest.length} more`, [dose.toFixed(3), absorbed], null);
+                    const sumOf = (valueOf) => rest.reduce((sum, one) => sum + valueOf(one), 0).toFixed(3);
+                    const absorbed = at === null ? "" : sumOf((one) => one.absorbed[at]);
+                    fill(row, `${rest.length} more`, [sumOf((one) => one.dose), absorbed], null);
                 } else {
-                    fill(row, k === 0 ? summary : "", [], null);
+                    fill(row, k === 0 ? "No dye: the material is a reflectance." : "", [], null);
                 }
             });
         },
