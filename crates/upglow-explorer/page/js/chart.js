@@ -66,6 +66,9 @@ const LABEL_HEIGHT = 14;
 const CELL = 4;
 // What a label costs that covers a cell of another, in cells of lines.
 const COVERED = 20;
+// What it costs that a label leaves its spot: less makes labels jump about while colors are dragged, more
+// leaves them where lines have come to cross them.
+const MOVED = 24;
 // What it costs that a label has its short text, in cells of lines.
 const SHORTENED = 32;
 // Below this share of its peak a line is too near to the others at the axis to have its label there.
@@ -268,7 +271,7 @@ export class WaveChart {
     }
 
     // The place and the text of a label with the least cost: for lines that cross it, for labels below it,
-    // and for being far from where it should be.
+    // and for being elsewhere than before.
     #bestPlace(item, taken) {
         const before = this.places.get(item.key);
         const longest = widthOf(item.text);
@@ -276,16 +279,16 @@ export class WaveChart {
         let best = { cost: 20 + longest / 6 };
         for (const text of [item.text, item.short].filter(Boolean)) {
             const width = widthOf(text);
-            const consider = (x, y, extra) => {
+            const consider = (spot, x, y, extra) => {
                 if (x < ROOM.left + 2 || x + width > this.right - 2 || y < ROOM.top - 20
                     || y + LABEL_HEIGHT > this.bottom - 2) {
                     return;
                 }
-                const moved = before ? 0.04 * Math.hypot(x - before.x, y - before.y) : 0;
-                const least = extra + Math.min(moved, 12) + (text === item.text ? 0 : SHORTENED);
+                const stays = !before || (spot === before.spot && text === before.text);
+                const least = extra + (stays ? 0 : MOVED) + (text === item.text ? 0 : SHORTENED);
                 const cost = least < best.cost ? least + taken.under(x, y, width) : least;
                 if (cost < best.cost) {
-                    best = { cost, x, y, text };
+                    best = { cost, spot, x, y, text };
                 }
             };
             this.#offerPlaces(item, width, consider);
@@ -293,16 +296,17 @@ export class WaveChart {
         return best.text ? best : null;
     }
 
-    // Calls back with corners of boxes for a label, and what each costs before lines are counted.
+    // Calls back with spots for a label: a number that stays while the line moves, the corner of the box, and
+    // what it costs before lines are counted.
     #offerPlaces(item, width, consider) {
-        const beside = (x, y, gap, extra) => {
-            consider(x + gap, y - 8, extra);
-            consider(x - gap - width, y - 8, extra);
+        const beside = (spot, x, y, gap, extra) => {
+            consider(spot, x + gap, y - 8, extra);
+            consider(spot + 1, x - gap - width, y - 8, extra);
         };
         if (item.at) {
             const [x, y] = [this.x(item.at[0]), this.y(item.at[1])];
             for (const dy of [0, 16, -16, 32, -32, 48, -48]) {
-                beside(x, y + dy, 14, Math.abs(dy) / 6);
+                beside(2 * dy, x, y + dy, 14, Math.abs(dy) / 6);
             }
             return;
         }
@@ -312,9 +316,9 @@ export class WaveChart {
             const share = ((this.bottom - y) / (this.bottom - ROOM.top)) * (this.top / peak);
             if (y >= ROOM.top - 2 && share > FOOT) {
                 const extra = item.nearNm ? Math.abs(x - this.x(item.nearNm)) / 30 : 14 * (1 - share);
-                consider(x - width / 2, y - 18, extra);
-                consider(x - width / 2, y + 4, extra + 2);
-                beside(x, y, 8, extra + 1);
+                consider(x + 2, x - width / 2, y - 18, extra);
+                consider(x + 3, x - width / 2, y + 4, extra + 2);
+                beside(x, x, y, 8, extra + 1);
             }
         }
     }

@@ -345,16 +345,18 @@ function dyeColor(dye, cube) {
     return { color: [["--hue", `${hue.toFixed(1)}deg`]], kind: isOdd ? "dye odd" : "dye" };
 }
 
-// The steepest nanometer of a curve.
+// Two sides of a peak are often as steep as each other up to rounding: the first is named.
+const AS_STEEP = 0.97;
+
+// The greatest slope of a curve, and where it is.
 function steepestOf(values) {
-    let best = { nm: FIRST_NM + 0.5, perNm: 0 };
-    for (let i = 0; i + 1 < values.length; i += 1) {
-        const perNm = values[i + 1] - values[i];
-        if (Math.abs(perNm) > Math.abs(best.perNm)) {
-            best = { nm: FIRST_NM + i + 0.5, perNm };
-        }
+    const slopes = Float64Array.from(values.slice(1), (value, i) => value - values[i]);
+    const most = slopes.reduce((best, slope) => Math.max(best, Math.abs(slope)), 0);
+    let i = slopes.findIndex((slope) => Math.abs(slope) >= AS_STEEP * most);
+    while (Math.abs(slopes[i + 1]) > Math.abs(slopes[i])) {
+        i += 1;
     }
-    return best;
+    return { nm: FIRST_NM + i + 0.5, perNm: Math.sign(slopes[i]) * most };
 }
 
 // A slope and its limit. Between nodes with and without dyes the limit is the greater one.
