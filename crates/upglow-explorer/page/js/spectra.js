@@ -12,7 +12,7 @@ const CURVES = [
     { key: "reflectance", name: "Reflectance", label: "reflectance" },
     { key: "base", name: "Base", label: "base reflectance" },
     { key: "slope", name: "Slope", label: "steepest slope of the base reflectance" },
-    { key: "passed", name: "Film passes", label: "what the film lets through" },
+    { key: "passed", name: "Let through", label: "what the dyes let through" },
     { key: "absorbed", name: "Dyes absorb", label: "what each dye absorbs" },
     { key: "emitted", name: "Dyes emit", label: "emission of each dye" },
     { key: "light", name: "Light", label: "light" },
@@ -285,7 +285,7 @@ export function makeSpectra(root, app) {
 }
 
 const COLUMNS = {
-    total: "total_radiance_factor", base: "base_reflectance", passed: "film_lets_through",
+    total: "total_radiance_factor", base: "base_reflectance", passed: "let_through",
     light: "light_relative_power", leaving: "light_leaving_relative_power",
     "before-total": "before_total_radiance_factor", "before-reflectance": "before_reflectance",
 };
