@@ -19,6 +19,7 @@ const CURVES = [
     { key: "leaving", name: "Light leaving", label: "light leaving" },
     { key: "before", name: "Before", label: "cube before" },
 ];
+const LABEL_OF = new Map(CURVES.map(({ key, label }) => [key, label]));
 // Samples of lines in the list that are not a straight one.
 const SAMPLES_OF = {
     absorbed: { d: "M0 8C6 8 6 0 10 0S14 8 20 8Z", class: "absorbed" },
@@ -79,21 +80,19 @@ export function makeSpectra(root, app) {
     }));
 
     const table = makeDyeTable();
-    const csv = element("button", { type: "button" }, "CSV");
-    csv.setAttribute("aria-label", "Save the spectra as CSV");
-    csv.addEventListener("click", () => download(`${fileName()}.csv`, "text/csv", asCsv()));
-    const svg = element("button", { type: "button" }, "SVG");
-    svg.setAttribute("aria-label", "Save the chart as SVG");
-    svg.addEventListener("click", () => {
-        const { space, value } = state;
-        const title = `Spectra of ${space} ${value.join(", ")} under ${shown.light.name}`;
-        download(`${fileName()}.svg`, "image/svg+xml", standaloneSvg(chart.svg, title));
-    });
-    const head = element("div", { class: "head" }, root.querySelector("h2"), csv, svg);
+    const saving = (name, type, textOf) => {
+        const button = element("button", { type: "button", "aria-label": `Save as ${name}` }, name);
+        button.addEventListener("click", () => {
+            const title = `Spectra of ${state.space} ${state.value.join(", ")} under ${shown.light.name}`;
+            const file = title.replaceAll(/[^A-Za-z0-9.-]+/g, "-");
+            download(`${file}.${name.toLowerCase()}`, type, textOf(title));
+        });
+        return button;
+    };
+    const head = element("div", { class: "head" }, root.querySelector("h2"),
+        saving("CSV", "text/csv", asCsv),
+        saving("SVG", "image/svg+xml", (title) => standaloneSvg(chart.svg, title)));
     root.append(head, chart.root, keys, table.root);
-
-    const fileName = () => ["spectra", state.space, ...state.value, shown.light.name].join("-")
-        .replaceAll(/[^A-Za-z0-9.-]+/g, "_");
 
     // All lines that are drawn: values from 300 nm by steps.
     function curves() {
@@ -159,7 +158,7 @@ export function makeSpectra(root, app) {
                 paint(chart.area(dye.absorbed, 0, 1, 3), "absorbed");
             }
             if (isOn("emitted")) {
-                paint(chart.path(dye.emission.map((v) => v / EMISSION_AT_1), 1, 3), "emitted");
+                paint(chart.path(dye.scaled, 1, 3), "emitted");
             }
         }
         dyeLayer.replaceChildren(...parts);
@@ -183,10 +182,9 @@ export function makeSpectra(root, app) {
     }
 
     function drawLabels(drawn, slope) {
-        const labelOf = new Map(CURVES.map(({ key, label }) => [key, label]));
         const items = drawn.map((curve) => ({
             ...curve, key: curve.line ?? curve.key, kind: curve.key,
-            text: curve.key === "leaving" ? shown.leavingText : labelOf.get(curve.key),
+            text: curve.key === "leaving" ? shown.leavingText : LABEL_OF.get(curve.key),
         })).filter(({ key }) => key !== "before-reflectance");
         // Without dyes the two are the same line, which has one label.
         const isOne = !shown.sampled.fluoresces && isOn("reflectance");
@@ -194,7 +192,7 @@ export function makeSpectra(root, app) {
         if (isOne && isOn("total")) {
             named.find(({ key }) => key === "reflectance").text = "reflectance = total radiance factor";
         }
-        const drawnLines = drawn.map(({ values: v, stepNm }) => ({ values: v, stepNm }));
+        const drawnLines = [...drawn];
         for (const dye of shown.dyes.filter(({ dose }) => dose >= FULL_DOSE)) {
             if (isOn("absorbed")) {
                 named.splice(2, 0, {
@@ -204,20 +202,19 @@ export function makeSpectra(root, app) {
                 drawnLines.push({ values: dye.absorbed });
             }
             if (isOn("emitted")) {
-                const scaled = dye.emission.map((v) => v / EMISSION_AT_1);
                 named.push({
                     key: `${dye.name} e`, text: `emission (1 is ${EMISSION_AT_1}/nm)`,
-                    short: "emission", kind: dye.kind, color: dye.color, values: scaled,
+                    short: "emission", kind: dye.kind, color: dye.color, values: dye.scaled,
                 });
-                drawnLines.push({ values: scaled });
+                drawnLines.push({ values: dye.scaled });
             }
         }
         if (slope) {
             const [short] = shown.slopeText.split(" under");
             named.splice(1, 0, { key: "slope", text: shown.slopeText, short, kind: "slope", at: slope });
         }
-        const one = { values: [1, 1], stepNm: FINE, nearNm: 770, key: "one", kind: "one-label" };
-        one.text = "1: as much as arrives";
+        const text = "1: as much as arrives";
+        const one = { key: "one", text, kind: "light", values: [1, 1], stepNm: FINE, nearNm: 770 };
         named.splice(1, 0, one);
         drawnLines.push(one);
         chart.placeLabels(named, drawnLines);
@@ -255,7 +252,7 @@ export function makeSpectra(root, app) {
             // Not as it is drawn, perhaps larger.
             const all = key === "leaving" ? shown.factor.leaving : v;
             const valueAt = (i) => (i % stepNm === 0 ? all[i / stepNm] : null);
-            return { name: COLUMNS[line ?? key] ?? key, valueAt };
+            return { name: (line ?? LABEL_OF.get(key)).replaceAll(/[ -]/g, "_"), valueAt };
         });
         for (const dye of shown.dyes) {
             if (isOn("absorbed")) {
@@ -284,12 +281,6 @@ export function makeSpectra(root, app) {
     };
 }
 
-const COLUMNS = {
-    total: "total_radiance_factor", base: "base_reflectance", passed: "let_through",
-    light: "light_relative_power", leaving: "light_leaving_relative_power",
-    "before-total": "before_total_radiance_factor", "before-reflectance": "before_reflectance",
-};
-
 function peakSeen(values, stepNm) {
     const [from, to] = SEEN_NM.map((nm) => atNm(nm) / stepNm);
     return values.slice(from, to + 1).reduce((peak, v) => (v > peak ? v : peak), 0);
@@ -305,7 +296,9 @@ function describe(now, key) {
     // Under a lamp of ultraviolet, what is sent out is faint beside the lamp: it is drawn larger.
     const faint = peakSeen(factor.leaving, STEP_NM);
     const scale = isDark ? LARGER.findLast((by) => by * faint <= 1) ?? 1 : 1;
-    const dyes = sampled.dyes.map((dye) => ({ ...dye, ...dyeColor(dye, cube) }));
+    const dyes = sampled.dyes.map((dye) => ({
+        ...dye, ...dyeColor(dye, cube), scaled: dye.emission.map((v) => v / EMISSION_AT_1),
+    }));
     const base = sampled.base ?? sampled.reflectance;
     const steepest = steepestOf(base);
     const before = now.otherSampled && {
@@ -379,17 +372,17 @@ function slopeText(perNm, { sampled: { fluoresces }, cube, shown }) {
 // Colors of light by wavelength, as strong as the screen shows them, and fading where they are hardly seen.
 function spectralColors(cube) {
     const found = [];
-    for (let i = 0; i < COARSE; i += 2) {
-        const nm = FIRST_NM + STEP_NM * i;
+    for (let nm = SEEN_NM[0]; nm <= SEEN_NM[1]; nm += 2 * STEP_NM) {
+        const i = atNm(nm) / STEP_NM;
         const xyz = [0, 1, 2].map((k) => cube.matching[3 * i + k]);
         const rgb = multiply(cube.lights[0].screen[SCREEN], xyz).map((v) => Math.max(v, 0));
-        const most = Math.max(...rgb);
-        const sum = xyz[0] + xyz[1] + xyz[2];
-        const isSeen = most > 0 && nm >= SEEN_NM[0] && nm <= SEEN_NM[1];
+        const most = Math.max(...rgb, 1e-9);
+        const seen = Math.min(Math.sqrt((xyz[0] + xyz[1] + xyz[2]) / 0.2), 1);
         found.push({
             nm,
-            color: cssColor({ rgb: most > 0 ? rgb.map((v) => v / most) : [0, 0, 0] }),
-            opacity: isSeen ? Math.min(Math.sqrt(sum / 0.2), 1).toFixed(3) : 0,
+            color: cssColor({ rgb: rgb.map((v) => v / most) }),
+            // A gradient goes on as it ends.
+            opacity: SEEN_NM.includes(nm) ? 0 : seen.toFixed(3),
         });
     }
     return found;

@@ -51,7 +51,7 @@ test("the CSV holds the program's spectra, and a radiance factor that is seen as
     const all = columns.wavelength_nm.map((_, i) => absorbed.reduce((sum, name) => sum + columns[name][i], 0));
     assertClose(all, curves.absorption, SINGLE, "absorbed by all dyes");
     const matching = await page.evaluate(() => Array.from(globalThis.explorer.app.now.cube.matching));
-    const light = columns.light_relative_power;
+    const { light } = columns;
     const band = (i) => light.slice(Math.max(i - 2, 0), i + 3).reduce((sum, v, _, { length }) => sum + v / length, 0);
     const seen = [0, 1, 2].map((k) => {
         let [sum, white] = [0, 0];
