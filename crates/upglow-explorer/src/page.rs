@@ -71,7 +71,7 @@ fn page(data: &str, functions: Option<&str>) -> String {
 fn in_one_scope(module: &str) -> String {
     let mut text = String::with_capacity(module.len());
     let left_out = ["import ", "//"];
-    let lines = module.lines().map(str::trim_start);
+    let lines = module.lines().map(str::trim_start).filter(|line| !line.is_empty());
     for line in lines.filter(|line| !left_out.iter().any(|start| line.starts_with(start))) {
         text += line.strip_prefix("export ").unwrap_or(line);
         text.push('\n');
@@ -115,7 +115,7 @@ mod tests {
     fn a_module_becomes_part_of_one_script() {
         let module = "import { a } from \"./a.js\";\n\n// The same.\nexport const b = a;\n\
                       export function c() {\n    // Twice.\n    return b; // \u{201c}b\u{201d}\n}\n";
-        let expected = "\nconst b = a;\nfunction c() {\nreturn b; // \u{201c}b\u{201d}\n}\n";
+        let expected = "const b = a;\nfunction c() {\nreturn b; // \u{201c}b\u{201d}\n}\n";
         assert_eq!(in_one_scope(module), expected);
     }
 

@@ -267,16 +267,15 @@ export function makeSpectra(root, app) {
         return csvOf(["wavelength_nm", ...columns.map(({ name }) => name)], rows);
     }
 
+    let drawn = [];
     return {
         draw(now) {
-            const before = shown;
-            const key = [now.light.name, state.uv].join();
-            if (before?.sampled === now.sampled && before.key === key && before.cube === now.cube
-                && before.otherSampled === now.otherSampled) {
-                return;
+            const next = [now.sampled, now.light, state.uv, now.otherSampled];
+            if (next.some((part, k) => part !== drawn[k])) {
+                drawn = next;
+                shown = describe(now);
+                drawLines();
             }
-            shown = describe(now, key);
-            drawLines();
         },
     };
 }
@@ -287,7 +286,7 @@ function peakSeen(values, stepNm) {
 }
 
 // All that the chart shows of the state.
-function describe(now, key) {
+function describe(now) {
     const { sampled, light, below, cube } = now;
     const factor = radianceFactor(sampled, light, state.uv, below);
     const power = Float64Array.from(light.power, (v, i) => v * kept(FIRST_NM + i, state.uv, below));
@@ -306,22 +305,15 @@ function describe(now, key) {
         reflectance: now.otherSampled.reflectance,
     };
     const absent = new Set(sampled.fluoresces ? [] : ["base", "passed", "absorbed", "emitted"]);
-    if (!sampled.passed) {
-        absent.add("passed");
-    }
     return {
-        key, cube, sampled, base, light, factor, power, isDark, dyes, steepest, absent,
+        sampled, base, light, factor, power, isDark, dyes, steepest, absent,
         leaving: factor.leaving.map((v) => scale * v),
         leavingText: scale > 1 ? `light leaving × ${scale}` : "light leaving",
         before,
-        otherSampled: now.otherSampled,
         slopeText: slopeText(Math.abs(steepest.perNm), now),
-        doseName: doseName(cube),
+        doseName: cube.meta.model === "film" ? "optical density" : "concentration",
     };
 }
-
-// How much there is of dyes, in the words of the cube's model.
-const doseName = (cube) => (cube.meta.model === "film" ? "optical density" : "concentration");
 
 // A dye has the hue of what it emits; neighbors among the cube's dyes differ in lightness.
 function dyeColor(dye, cube) {
@@ -403,37 +395,34 @@ function makeDyeTable() {
     const table = element("table", { class: "dyes" },
         element("thead", {}, element("tr", {}, ...heads)),
         element("tbody", {}, ...rows.map(({ row }) => row)));
-    const fill = ({ sample, name, cells }, text, numbers, dye) => {
-        name.textContent = text;
-        name.title = text;
-        cells.forEach((cell, k) => {
-            cell.textContent = numbers[k] ?? "";
-        });
-        sample.setAttribute("class", dye ? `dye-sample ${dye.kind}` : "dye-sample none");
-        colored(sample, dye?.color);
-    };
     return {
         root: table,
-        draw({ dyes, doseName: name }, at) {
-            heads[1].textContent = name;
-            const isAll = dyes.length <= rows.length;
-            const own = isAll ? dyes : dyes.slice(0, DYE_ROWS);
-            const rest = isAll ? [] : dyes.slice(DYE_ROWS);
-            rows.forEach((row, k) => {
-                const dye = own[k];
-                if (dye) {
-                    const dose = dye.dose < 5e-4 ? "< 0.001" : dye.dose.toFixed(3);
-                    const [absorbed, emitted] = at === null ? ["", ""]
-                        : [dye.absorbed[at].toFixed(3), dye.emission[at].toFixed(4)];
-                    fill(row, dye.name, [dose, absorbed, emitted], dye);
-                } else if (k === own.length && rest.length > 0) {
-                    const sumOf = (valueOf) => rest.reduce((sum, one) => sum + valueOf(one), 0).toFixed(3);
-                    const absorbed = at === null ? "" : sumOf((one) => one.absorbed[at]);
-                    fill(row, `${rest.length} more`, [sumOf((one) => one.dose), absorbed], null);
-                } else {
-                    fill(row, k === 0 ? "No dye: the material is a reflectance." : "", [], null);
-                }
+        draw({ dyes, doseName }, at) {
+            heads[1].textContent = doseName;
+            const listed = dyes.length > rows.length
+                ? [...dyes.slice(0, DYE_ROWS), together(dyes.slice(DYE_ROWS))] : dyes;
+            rows.forEach(({ sample, name, cells }, k) => {
+                const dye = listed[k];
+                name.textContent = dye?.name ?? (k === 0 ? "No dye: the material is a reflectance." : "");
+                name.title = name.textContent;
+                sample.setAttribute("class", `dye-sample ${dye?.kind ?? "none"}`);
+                colored(sample, dye?.color);
+                const dose = dye && (dye.dose < 5e-4 ? "< 0.001" : dye.dose.toFixed(3));
+                const numbers = [dose, dye?.absorbed[at]?.toFixed(3), dye?.emission?.[at]?.toFixed(4)];
+                cells.forEach((cell, column) => {
+                    cell.textContent = numbers[column] ?? "";
+                });
             });
         },
+    };
+}
+
+// Dyes without rows of their own.
+function together(dyes) {
+    const sumOf = (valueOf) => dyes.reduce((sum, dye) => sum + valueOf(dye), 0);
+    return {
+        name: `${dyes.length} more`,
+        dose: sumOf(({ dose }) => dose),
+        absorbed: dyes[0].absorbed.map((_, i) => sumOf(({ absorbed }) => absorbed[i])),
     };
 }
