@@ -1,7 +1,8 @@
 // Colors: matrices, CIELAB, differences, and what a screen shows. Everything is XYZ with Y = 1 for white.
 
 export function multiply(m, v) {
-    return [0, 1, 2].map((i) => m[i][0] * v[0] + m[i][1] * v[1] + m[i][2] * v[2]);
+    const row = ([a, b, c]) => a * v[0] + b * v[1] + c * v[2];
+    return [row(m[0]), row(m[1]), row(m[2])];
 }
 
 // The sRGB curve, which Display P3 uses too.
@@ -68,25 +69,27 @@ export const SCREEN_NAME = SCREEN === "p3" ? "Display P3" : "sRGB";
 export const CSS_SPACE = SCREEN === "p3" ? "display-p3" : "srgb";
 // The luminance of the screen's linear RGB.
 export const LUMINANCE = SCREEN === "p3" ? [0.22897, 0.69174, 0.07929] : [0.21264, 0.71517, 0.07219];
-// Channels beyond 0 to 1 by less are so by rounding.
-const ROUNDING = 1e-4;
+// Half a step of eight bits near black: less than that beyond 0 to 1 does not show.
+const ROUNDING = 1.5e-4;
 
-// A color of a light on the screen: linear RGB within 0 to 1, and whether it was outside. A color outside
-// keeps its luminance and hue and becomes as gray as necessary.
+// A color of a light on the screen: linear RGB within 0 to 1, how far outside it was (at most 0 inside), and
+// whether that shows. A color outside keeps its luminance and hue and becomes as gray as necessary.
 export function onScreen(xyz, light) {
     const rgb = multiply(light.screen[SCREEN], xyz);
-    const clipped = rgb.some((v) => !(v >= -ROUNDING && v <= 1 + ROUNDING));
-    if (!clipped) {
-        return { rgb: rgb.map((v) => Math.min(Math.max(v, 0), 1)), clipped };
-    }
-    const luminance = rgb[0] * LUMINANCE[0] + rgb[1] * LUMINANCE[1] + rgb[2] * LUMINANCE[2];
-    const gray = Math.min(Math.max(luminance, 0), 1);
+    const beyond = Math.max(-rgb[0], -rgb[1], -rgb[2], rgb[0] - 1, rgb[1] - 1, rgb[2] - 1);
+    const clipped = !(beyond <= ROUNDING);
+    let gray = 0;
     let share = 1;
-    for (const v of rgb) {
-        const off = v - gray;
-        share = off > 0 ? Math.min(share, (1 - gray) / off) : off < 0 ? Math.min(share, gray / -off) : share;
+    if (clipped) {
+        const luminance = rgb[0] * LUMINANCE[0] + rgb[1] * LUMINANCE[1] + rgb[2] * LUMINANCE[2];
+        gray = Math.min(Math.max(luminance, 0), 1);
+        for (const v of rgb) {
+            const off = v - gray;
+            share = off > 0 ? Math.min(share, (1 - gray) / off) : off < 0 ? Math.min(share, gray / -off) : share;
+        }
     }
-    return { rgb: rgb.map((v) => Math.min(Math.max(gray + share * (v - gray), 0), 1)), clipped };
+    const within = (v) => Math.min(Math.max(gray + share * (v - gray), 0), 1);
+    return { rgb: [within(rgb[0]), within(rgb[1]), within(rgb[2])], beyond, clipped };
 }
 
 // The same as a CSS color.
@@ -101,10 +104,4 @@ export function canvasContext(canvas) {
 
 export function newImage(context, width, height) {
     return context.createImageData(width, height, { colorSpace: CSS_SPACE });
-}
-
-// How far outside the screen's gamut a color is: at most 0 inside.
-export function beyondScreen(xyz, light) {
-    const rgb = multiply(light.screen[SCREEN], xyz);
-    return Math.max(...rgb.map((v) => Math.max(-v, v - 1)));
 }

@@ -1,6 +1,6 @@
 // The color: its fields, a slice by hue and chroma, and a slice of the cube's RGB.
 
-import { SCREEN_NAME, beyondScreen, canvasContext, cssColor, de2000, decoded, encoded, labOf, multiply, newImage, onScreen, xyzOfLab } from "./color.js";
+import { SCREEN_NAME, canvasContext, cssColor, de2000, decoded, encoded, labOf, multiply, newImage, onScreen, xyzOfLab } from "./color.js";
 import { set, state } from "./state.js";
 import { contour, element, svgElement } from "./dom.js";
 
@@ -26,8 +26,7 @@ export function fieldSpaces({ meta }) {
 
 // Chroma at the edge of the slice.
 const MOST_CHROMA = 150;
-// Samples of a slice along each axis: of its colors, and of its borders.
-const PIXELS = 192;
+// Samples of a slice along each axis; the first and the last lie on its edges.
 const SAMPLES = 97;
 
 // Steep, so that the line of the cube's border lies on it between two samples.
@@ -60,7 +59,7 @@ export function makePicker(root, app) {
         )),
     ];
     const plane = element("div", { class: "plane", tabindex: "0", role: "application" });
-    const canvas = element("canvas", { width: PIXELS, height: PIXELS });
+    const canvas = element("canvas", { width: SAMPLES, height: SAMPLES });
     const lines = svgElement("svg", { viewBox: "0 0 100 100", class: "plane-lines", "aria-hidden": "true" });
     const mark = element("div", { class: "plane-mark" });
     plane.append(canvas, lines, mark);
@@ -103,8 +102,7 @@ export function makePicker(root, app) {
             const key = [now.cube.id, Boolean(now.cube.borders), state.slice, state.fixed, shown.depth.toFixed(3)].join();
             if (key !== drawn) {
                 drawn = key;
-                paint(canvas, shown, now.cube);
-                lines.replaceChildren(...borderLines(shown, now.cube));
+                lines.replaceChildren(...paint(canvas, shown, now.cube));
             }
             const [x, y] = shown.placeOf(now.target);
             mark.style.setProperty("left", `${100 * Math.min(Math.max(x, 0), 1)}%`);
@@ -159,43 +157,32 @@ function slice(now, depth) {
     };
 }
 
+// Paints the colors of a slice; the lines where a color is just within reach of each kind.
 function paint(canvas, shown, cube) {
     const context = canvasContext(canvas);
-    const image = newImage(context, PIXELS, PIXELS);
-    const light = cube.lights[0];
-    for (let j = 0; j < PIXELS; j += 1) {
-        for (let i = 0; i < PIXELS; i += 1) {
-            const xyz = shown.xyzAt((i + 0.5) / PIXELS, (j + 0.5) / PIXELS);
-            const { rgb } = onScreen(xyz, light);
-            const at = 4 * (j * PIXELS + i);
-            for (let k = 0; k < 3; k += 1) {
-                image.data[at + k] = 255 * encoded(rgb[k]) + 0.5;
-            }
-            image.data[at + 3] = 255;
-        }
-    }
-    context.putImageData(image, 0, 0);
-}
-
-// Lines where a color is just within reach of each kind.
-function borderLines(shown, cube) {
+    const image = newImage(context, SAMPLES, SAMPLES);
     const fields = BORDERS.map(() => new Float64Array(SAMPLES * SAMPLES));
     const light = cube.lights[0];
     for (let j = 0; j < SAMPLES; j += 1) {
         for (let i = 0; i < SAMPLES; i += 1) {
-            const xyz = shown.xyzAt(i / (SAMPLES - 1), j / (SAMPLES - 1));
-            const lab = labOf(xyz, cube.white);
             const at = j * SAMPLES + i;
+            const xyz = shown.xyzAt(i / (SAMPLES - 1), j / (SAMPLES - 1));
+            const { rgb, beyond } = onScreen(xyz, light);
+            for (let k = 0; k < 3; k += 1) {
+                image.data[4 * at + k] = 255 * encoded(rgb[k]) + 0.5;
+            }
+            image.data[4 * at + 3] = 255;
+            const lab = labOf(xyz, cube.white);
             const chroma = Math.hypot(lab[1], lab[2]);
             const hue = (Math.atan2(lab[2], lab[1]) * 180) / Math.PI;
-            const beyond = (kind) => (cube.borders ? chroma - cube.borderChroma(kind, lab[0], hue) : -1);
-            fields[0][at] = beyond(0);
-            fields[1][at] = beyond(1);
+            for (const [field, kind] of [[0, 0], [1, 1], [3, 2]]) {
+                fields[field][at] = cube.borders ? chroma - cube.borderChroma(kind, lab[0], hue) : -1;
+            }
             fields[2][at] = missedBy(cube, xyz, lab);
-            fields[3][at] = beyond(2);
-            fields[4][at] = beyondScreen(xyz, light);
+            fields[4][at] = beyond;
         }
     }
+    context.putImageData(image, 0, 0);
     return fields.flatMap((field, k) => casedLine(contour(field, SAMPLES, 100), BORDERS[k][0]));
 }
 
