@@ -60,23 +60,26 @@ fn embedded(id: &str, text: &str) -> String {
 /// The page around data and a cube's functions.
 fn page(data: &str, functions: Option<&str>) -> String {
     let script: String = functions.into_iter().chain(SCRIPTS).map(in_one_scope).collect();
-    HTML.replace("/*STYLE*/", STYLE)
+    let style: String = plain_lines(STYLE).flat_map(|line| [line, "\n"]).collect();
+    HTML.replace("/*STYLE*/", &style)
         .replace("<!--DATA-->", data)
         // Last, so that nothing in it is taken for a place of the others.
         .replace("/*SCRIPT*/", &script)
 }
 
 /// A module as part of one script: without what it imports from the others, its exports as plain names.
-/// What only readers of the files need stays behind: a quarter of them is comments and indentation.
 fn in_one_scope(module: &str) -> String {
-    let mut text = String::with_capacity(module.len());
-    let left_out = ["import ", "//"];
-    let lines = module.lines().map(str::trim_start).filter(|line| !line.is_empty());
-    for line in lines.filter(|line| !left_out.iter().any(|start| line.starts_with(start))) {
-        text += line.strip_prefix("export ").unwrap_or(line);
-        text.push('\n');
-    }
-    text
+    let lines = plain_lines(module).filter(|line| !line.starts_with("import "));
+    lines.flat_map(|line| [line.strip_prefix("export ").unwrap_or(line), "\n"]).collect()
+}
+
+/// What browsers need of a text: a quarter of it is indentation, empty lines, and comments for readers of
+/// the files.
+fn plain_lines(text: &str) -> impl Iterator<Item = &str> {
+    let is_comment =
+        |line: &str| line.starts_with("//") || line.starts_with("/*") && line.ends_with("*/");
+    let lines = text.lines().map(str::trim_start);
+    lines.filter(move |line| !line.is_empty() && !is_comment(line))
 }
 
 #[cfg(test)]
