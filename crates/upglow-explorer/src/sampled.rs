@@ -44,34 +44,59 @@ pub(crate) struct SampledDye {
 impl Sampled {
     pub(crate) fn of(mixture: &Mixture<'_>, observer: &Observer, label: &str) -> Self {
         let model = mixture.model();
-        let fine = |value: &dyn Fn(f64) -> f64| -> Vec<f32> {
-            Grid::FINE.wavelengths_nm().map(|nm| to_single(value(nm))).collect()
-        };
+        let moved = mixture
+            .is_fluorescent()
+            .then_some(|in_nm, out_nm| mixture.reradiation_per_nm(in_nm, out_nm));
+        let sampled = Self::of_curves(|nm| mixture.reflectance(nm), moved, observer, label);
         let parts: Vec<(f64, Material)> = mixture.parts().collect();
         let mean = |of: &dyn Fn(Material) -> Material| {
             let with = |(w, part): &(f64, Material)| (*w, Mixture::of(model, of(*part)));
             let parts: Vec<_> = parts.iter().map(with).collect();
-            fine(&|nm| parts.iter().map(|(w, part)| w * part.reflectance(nm)).sum())
+            fine(|nm| parts.iter().map(|(w, part)| w * part.reflectance(nm)).sum())
         };
-        let moved = mixture.is_fluorescent().then(|| moved(mixture));
         Self {
-            label: label.into(),
-            reflectance: fine(&|nm| mixture.reflectance(nm)),
             base: mean(&|part| Material::passive(part.reflectance)),
             passed: mean(&|part| white_with(part.fluorescence)),
             dyes: dyes(&parts, model),
-            response: moved.is_some().then(|| {
-                response(observer, |in_nm, out_nm| mixture.reradiation_per_nm(in_nm, out_nm))
-            }),
+            ..sampled
+        }
+    }
+
+    /// A material whose dyes are not known: reflectance by wavelength, and re-radiation per nm by incident
+    /// and outgoing wavelength.
+    pub(crate) fn of_curves(
+        reflectance: impl Fn(f64) -> f64,
+        reradiation_per_nm: Option<impl Fn(f64, f64) -> f64>,
+        observer: &Observer,
+        label: &str,
+    ) -> Self {
+        let reflectance = fine(reflectance);
+        let moved = reradiation_per_nm.as_ref();
+        Self {
+            label: label.into(),
+            base: reflectance.clone(),
+            passed: vec![1.0; reflectance.len()],
+            reflectance,
+            dyes: Vec::new(),
+            response: moved.map(|moved| response(observer, moved)),
             fluoresces: moved.is_some(),
-            moved: moved.as_deref().map(in_base64),
+            moved: moved.map(matrix_in_base64),
         }
     }
 }
 
-/// Numbers as base64 of little-endian floats.
-pub(crate) fn in_base64(numbers: &[f32]) -> String {
-    let bytes: Vec<u8> = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
+fn fine(value: impl Fn(f64) -> f64) -> Vec<f32> {
+    Grid::FINE.wavelengths_nm().map(value).map(to_single).collect()
+}
+
+/// Re-radiation over [`Grid::FIT`] twice, `[incident][outgoing]`, as base64 of little-endian floats.
+fn matrix_in_base64(reradiation_per_nm: impl Fn(f64, f64) -> f64) -> String {
+    let mut bytes = Vec::with_capacity(Grid::FIT.len().pow(2) * size_of::<f32>());
+    for in_nm in Grid::FIT.wavelengths_nm() {
+        for out_nm in Grid::FIT.wavelengths_nm() {
+            bytes.extend(to_single(reradiation_per_nm(in_nm, out_nm)).to_le_bytes());
+        }
+    }
     STANDARD.encode(bytes)
 }
 
@@ -79,19 +104,8 @@ fn white_with(fluorescence: Fluorescence) -> Material {
     Material { reflectance: Sigmoid::flat(1.0), fluorescence }
 }
 
-fn moved(mixture: &Mixture<'_>) -> Vec<f32> {
-    let grid = || Grid::FIT.wavelengths_nm();
-    grid()
-        .flat_map(|in_nm| grid().map(move |out_nm| mixture.reradiation_per_nm(in_nm, out_nm)))
-        .map(to_single)
-        .collect()
-}
-
 /// XYZ of what is moved from each wavelength of [`Grid::FINE`], by sums over [`Grid::FIT`].
-pub(crate) fn response(
-    observer: &Observer,
-    reradiation_per_nm: impl Fn(f64, f64) -> f64,
-) -> Vec<f32> {
+fn response(observer: &Observer, reradiation_per_nm: impl Fn(f64, f64) -> f64) -> Vec<f32> {
     let step_nm = f64::from(Grid::FIT.step_nm());
     let matching = observer.on(Grid::FIT);
     let seen = |in_nm: f64| {
@@ -140,8 +154,7 @@ fn bell(weight: f64, part: Material, model: &Model) -> Option<SampledDye> {
     else {
         return None;
     };
-    let emission = |nm| to_single(bells.emission(emission_peak_nm, nm).0);
-    let emission = Grid::FINE.wavelengths_nm().map(emission).collect();
+    let emission = fine(|nm| bells.emission(emission_peak_nm, nm).0);
     let dose = (weight * concentration, "concentration");
     let parts = vec![(weight, part.fluorescence)];
     Some(sampled_dye(
@@ -168,7 +181,7 @@ fn sampled_dye(
         name: name.into(),
         dose: to_single(dose),
         dose_text: format!("{word} {dose:.3}"),
-        absorbed: Grid::FINE.wavelengths_nm().map(absorbed).map(to_single).collect(),
+        absorbed: fine(absorbed),
         emission,
     }
 }

@@ -8,11 +8,15 @@ mod answer;
 mod body;
 mod builds;
 mod choices;
+mod drop_routes;
+mod drops;
 mod explain;
 mod guard;
+mod locked;
 mod planner;
 mod policy;
 mod shelf;
+mod spectral;
 
 use std::io;
 use std::net::{Ipv4Addr, TcpListener};
@@ -38,6 +42,7 @@ use upglow::Cube;
 
 use self::answer::{Refusal, binary, of_type, work};
 use self::builds::{Builds, Job, Order};
+use self::drops::Drops;
 use self::explain::Question;
 use self::guard::{Guard, guarded};
 use self::shelf::{Held, Shelf};
@@ -54,6 +59,8 @@ const MOST_WORKERS: usize = 16;
 const HEAD_TIME: Duration = Duration::from_secs(15);
 /// Room for the head of a request, bytes.
 const HEAD_BYTES: usize = 16 << 10;
+/// Pixels of a dropped picture: more takes a minute to read.
+const MOST_PIXELS: usize = 1 << 28;
 /// How often the server looks whether it shall end.
 const STOP_TIME: Duration = Duration::from_millis(100);
 /// The time for work that is left when the server ends.
@@ -106,6 +113,9 @@ struct Shared {
     shelf: Shelf,
     builds: Builds,
     planner: Planner,
+    drops: Drops,
+    /// Who has it may receive and read a picture.
+    files: Arc<Semaphore>,
 }
 
 type Answer = Result<Response, Refusal>;
@@ -131,16 +141,19 @@ impl Server {
             let _context = runtime.enter();
             tokio::net::TcpListener::from_std(listener)?
         };
+        let folder = tempfile::Builder::new().prefix("upglow-explore-").tempdir()?;
         let shared = Arc::new(Shared {
             page: page.into(),
             shelf: Shelf::new(Held::new(0, cube, name)?),
             builds: Builds::default(),
             planner,
+            drops: Drops::new(folder.path()),
+            files: Arc::new(Semaphore::new(1)),
         });
-        let pool = rayon::ThreadPoolBuilder::new().build()?;
+        let threads = rayon::current_num_threads();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
         let address = format!("http://127.0.0.1:{port}{}", guard.path());
         let router = router(guard, shared.clone());
-        let folder = tempfile::Builder::new().prefix("upglow-explore-").tempdir()?;
         Ok(Self { address, router, shared, listener, pool, folder, runtime })
     }
 
@@ -210,6 +223,7 @@ fn router(guard: Guard, shared: Arc<Shared>) -> Router {
         .route("/{token}/build", post(build))
         .route("/{token}/build/{item}", get(build_state))
         .route("/{token}/build/{item}/stop", post(build_stop))
+        .merge(drop_routes::routes())
         .fallback(async || Refusal::not_found("page"))
         .with_state(shared)
         .layer(middleware::from_fn_with_state(Arc::new(guard), guarded))
@@ -241,11 +255,21 @@ async fn cube_file(
     }
 }
 
+/// Refuses a picture that takes too long to read.
+fn check_size(name: &str, [width, height]: [usize; 2]) -> Result<(), Refusal> {
+    if width.saturating_mul(height) <= MOST_PIXELS {
+        return Ok(());
+    }
+    let error = format!("{name}: {width} × {height} pixels, expected at most {MOST_PIXELS}");
+    Err(Refusal::unusable(error))
+}
+
 async fn choices(State(shared): State<Arc<Shared>>) -> Answer {
     let mut choices = choices::built_in();
     let cubes = shared.shelf.all();
     let cubes = cubes.iter().map(|held| json!({ "id": held.id, "name": held.name }));
     choices["cubes"] = cubes.collect();
+    choices["dropped_lights"] = json!(shared.drops.lights());
     choices["options"] = json!(shared.planner.options);
     choices["resolution"] = json!(planner::RESOLUTIONS);
     Ok(answer::json(&choices))
@@ -264,7 +288,7 @@ async fn color(State(shared): State<Arc<Shared>>, body: Body) -> Answer {
 async fn build(State(shared): State<Arc<Shared>>, body: Body) -> Answer {
     let Order { options } = body::json(body).await?;
     let job = work(move || {
-        let (plan, command) = shared.planner.checked(&options)?;
+        let (plan, command) = shared.planner.checked(&options, &shared.drops)?;
         Ok(shared.builds.start(plan, command))
     });
     Ok(answer::json(&job.await?.told()))

@@ -60,6 +60,7 @@ pub use exr::writer::{Compression, ExrDescription, ExrWriter, WriteExrError};
 pub use picture::band::Band;
 pub use picture::encoding::{Encoding, ParametricCurve};
 pub use picture::error::PictureError;
+pub use picture::excerpt::Excerpt;
 pub use picture::interop::InteropSpace;
 pub use picture::stated::{Declared, DeclaredAlpha, Found, Interpretation, Missing, Word};
 pub use picture::{FORMATS, Picture, SUFFIXES};

@@ -5,6 +5,7 @@ pub(crate) mod chromaticities;
 mod code_points;
 pub(crate) mod encoding;
 pub(crate) mod error;
+pub(crate) mod excerpt;
 mod exif;
 mod exr;
 mod hdr;

@@ -1,13 +1,15 @@
 //! Bodies of requests, within limits of size and time.
 
+use std::path::PathBuf;
 use std::time::Duration;
 
 use axum::body::{Body, Bytes, HttpBody as _};
 use axum::http::StatusCode;
 use http_body_util::BodyExt as _;
+use tokio::sync::mpsc;
 use tokio::time::{Instant, timeout, timeout_at};
 
-use super::answer::Refusal;
+use super::answer::{Refusal, work};
 
 /// The greatest size of a body, and the time for it to arrive.
 #[derive(Clone, Copy, Debug)]
@@ -19,12 +21,18 @@ pub(super) struct Limit {
 impl Limit {
     /// Requests in JSON.
     pub(super) const JSON: Self = Self { bytes: 64 << 10, time: Duration::from_secs(10) };
+    /// Tables in CSV.
+    pub(super) const TABLE: Self = Self { bytes: 1 << 20, time: Duration::from_secs(10) };
+    /// Pictures.
+    pub(super) const PICTURE: Self = Self { bytes: 256 << 20, time: Duration::from_secs(120) };
 }
 
 /// Of a body that is too large, this much is still read, so that the client gets to read the answer.
 const MOST_DRAINED: u64 = 1 << 30;
 /// A client that sends nothing for so long waits for the answer.
 const SILENCE: Duration = Duration::from_millis(250);
+/// Parts of a body that wait to be written.
+const WAITING_PARTS: usize = 4;
 
 /// A body that is being read.
 struct Reading {
@@ -87,7 +95,44 @@ pub(super) async fn bytes(body: Body, limit: Limit) -> Result<Vec<u8>, Refusal> 
     Ok(all)
 }
 
+/// The whole body as text.
+pub(super) async fn text(body: Body, limit: Limit) -> Result<String, Refusal> {
+    String::from_utf8(bytes(body, limit).await?)
+        .map_err(|_| Refusal::bad("bytes that are no text, expected UTF-8"))
+}
+
 /// The whole body as a value in JSON.
 pub(super) async fn json<T: serde::de::DeserializeOwned>(body: Body) -> Result<T, Refusal> {
     serde_json::from_slice(&bytes(body, Limit::JSON).await?).map_err(Refusal::bad)
+}
+
+/// Writes the whole body to a new file.
+pub(super) async fn file(body: Body, limit: Limit, path: PathBuf) -> Result<(), Refusal> {
+    let mut reading = Reading::start(body, limit).await?;
+    let (sender, mut parts) = mpsc::channel::<Bytes>(WAITING_PARTS);
+    let failed = |error: std::io::Error| {
+        Refusal::new(StatusCode::INSUFFICIENT_STORAGE, format!("the file is not kept: {error}"))
+    };
+    let written = tokio::spawn(work(move || {
+        use std::io::Write as _;
+        let mut file = std::fs::File::create_new(path).map_err(failed)?;
+        while let Some(part) = parts.blocking_recv() {
+            file.write_all(&part).map_err(failed)?;
+        }
+        file.flush().map_err(failed)
+    }));
+    let read = loop {
+        let part = match reading.next().await {
+            Ok(Some(part)) => part,
+            Ok(None) => break Ok(()),
+            Err(refusal) => break Err(refusal),
+        };
+        if sender.send(part).await.is_err() {
+            // The writer has failed, and says why.
+            break Ok(());
+        }
+    };
+    drop(sender);
+    let written = written.await.map_err(|_| Refusal::bad("the file is not kept"))?;
+    read.and(written)
 }

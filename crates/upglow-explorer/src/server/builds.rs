@@ -9,6 +9,7 @@ use serde::Serialize;
 use upglow_fit::{BuildError, Progress, Watch, build_cube};
 
 use super::answer::Refusal;
+use super::locked::locked;
 use super::planner::Plan;
 use super::shelf::{Held, Shelf};
 
@@ -223,9 +224,4 @@ impl Builds {
         queue.known.iter().for_each(|job| job.stop());
         self.woken.notify_all();
     }
-}
-
-/// A panic of another thread leaves these values whole.
-fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

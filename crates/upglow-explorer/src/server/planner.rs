@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fmt;
+use std::path::Path;
 
 use serde::Serialize;
 use upglow::{DyeSet, Model};
@@ -9,6 +10,7 @@ use upglow_color::{Contract, Illuminant, Observer};
 use upglow_fit::FitOptions;
 
 use super::answer::Refusal;
+use super::drops::Drops;
 
 /// A cube to build.
 #[derive(Clone, Debug)]
@@ -64,7 +66,7 @@ pub(super) const RESOLUTIONS: [usize; 2] = [2, 64];
 type Known = fn(&str) -> Result<(), String>;
 
 /// Options whose values the command line also takes as paths. From the page only built-in names come
-/// through, and files that it has dropped.
+/// through, and what it has dropped, whose paths the server knows.
 const FROM_FILES: [(&str, Known); 3] = [
     ("--illuminant", |name| Illuminant::named(name).map(drop).map_err(|e| e.to_string())),
     ("--observer", |name| Observer::named(name).map(drop).map_err(|e| e.to_string())),
@@ -76,7 +78,10 @@ impl Planner {
     pub(super) fn checked(
         &self,
         given: &BTreeMap<String, String>,
+        drops: &Drops,
     ) -> Result<(Plan, String), Refusal> {
+        let _unchanged = drops.unchanged();
+        let (mut known, mut typed) = (given.clone(), given.clone());
         for (name, value) in given {
             if !self.options.iter().any(|option| option.name == *name) {
                 let known: Vec<&str> = self.options.iter().map(|o| o.name.as_str()).collect();
@@ -84,10 +89,16 @@ impl Planner {
                 return Err(Refusal::bad(error));
             }
             if let Some((_, check)) = FROM_FILES.iter().find(|(option, _)| option == name) {
-                check(value).map_err(|error| Refusal::bad(format!("{name}: {error}")))?;
+                if let Some(path) = drops.path_of(name, value)? {
+                    let file = Path::new(&path).file_name().unwrap_or_default();
+                    typed.insert(name.clone(), file.to_string_lossy().into_owned());
+                    known.insert(name.clone(), path);
+                } else {
+                    check(value).map_err(|error| Refusal::bad(format!("{name}: {error}")))?;
+                }
             }
         }
-        let plan = (self.plan)(given).map_err(Refusal::bad)?;
+        let plan = (self.plan)(&known).map_err(Refusal::bad)?;
         let [least, most] = RESOLUTIONS;
         if !(least..=most).contains(&plan.resolution) {
             let found = plan.resolution;
@@ -95,7 +106,7 @@ impl Planner {
                 format!("--resolution: {found}, expected {least} to {most} in the explorer");
             return Err(Refusal::bad(error));
         }
-        Ok((plan, command_line(given)))
+        Ok((plan, command_line(&typed)))
     }
 }
 

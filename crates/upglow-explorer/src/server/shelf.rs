@@ -1,13 +1,14 @@
 //! The cubes that the server keeps.
 
 use std::collections::VecDeque;
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock};
 
 use axum::body::Bytes;
 use upglow::Cube;
 
 use super::answer::Refusal;
 use super::explain::Explainer;
+use super::locked::locked;
 use crate::cube_data::{CubeData, ExplorerError};
 
 /// How many of the cubes that were built are kept, besides the first: enough to compare, and at most
@@ -69,7 +70,7 @@ impl Shelf {
 
     /// All cubes, the newest last.
     pub(super) fn all(&self) -> Vec<Arc<Held>> {
-        let built = self.built.lock().unwrap_or_else(PoisonError::into_inner);
+        let built = locked(&self.built);
         std::iter::once(&self.first).chain(built.iter()).cloned().collect()
     }
 
@@ -79,7 +80,7 @@ impl Shelf {
     }
 
     pub(super) fn add(&self, held: Held) {
-        let mut built = self.built.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut built = locked(&self.built);
         built.push_back(Arc::new(held));
         if built.len() > KEPT {
             built.pop_front();

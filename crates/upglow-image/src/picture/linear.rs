@@ -95,7 +95,7 @@ impl LinearPicture {
     /// # Errors
     ///
     /// [`PictureError`] if the file is damaged there.
-    fn read_band(&mut self, rows: usize) -> Result<Option<Band>, PictureError> {
+    pub(super) fn read_band(&mut self, rows: usize) -> Result<Option<Band>, PictureError> {
         let Some(mut band) = self.picture.read_band(rows)? else { return Ok(None) };
         // Encoded colors are multiplied by alpha as they are stored, so they are divided first.
         if let (Some(Alpha::Associated), Some(alpha)) = (self.picture.alpha(), &band.alpha) {

@@ -1,5 +1,6 @@
 //! Reads spectral pictures by texel.
 
+use std::ops::Range;
 use std::path::Path;
 
 use super::channel::{BispectralUnit, SpectralChannel, key_order, rising_pairs};
@@ -84,13 +85,33 @@ impl SpectralPicture {
     ///
     /// [`FormError`] if there is no such texel or its block is damaged.
     pub fn at(&mut self, x: usize, y: usize) -> Result<SpectralTexel, FormError> {
+        let values = self.read(x..x.saturating_add(1), y)?;
+        Ok(self.texel(|channel| values[channel][0]))
+    }
+
+    /// Every `step`-th texel of a row from the top. Rows are read fastest in their order.
+    ///
+    /// # Errors
+    ///
+    /// [`FormError`] if there is no such row or a block of it is damaged.
+    pub fn row(&mut self, y: usize, step: usize) -> Result<Vec<SpectralTexel>, FormError> {
+        let [width, _] = self.size();
+        let values = self.read(0..width, y)?;
+        let columns = (0..width).step_by(step.max(1));
+        Ok(columns.map(|x| self.texel(|channel| values[channel][x])).collect())
+    }
+
+    /// Some columns of a row, by channel.
+    fn read(&mut self, columns: Range<usize>, y: usize) -> Result<Vec<Vec<f32>>, FormError> {
         let numbers: Vec<usize> = (0..self.reader.channels().len()).collect();
-        let (columns, rows) = (x..x.saturating_add(1), y..y.saturating_add(1));
-        let values = self.reader.read_region(columns, rows, &numbers)?;
-        let value = |channel: usize| values[channel][0];
+        Ok(self.reader.read_region(columns, y..y.saturating_add(1), &numbers)?)
+    }
+
+    /// The texel with these values of the channels.
+    fn texel(&self, value: impl Fn(usize) -> f32) -> SpectralTexel {
         let mut texel = SpectralTexel {
             reradiation_unit: self.bispectral_unit(),
-            preview: self.preview.map(|rgb| rgb.map(value)),
+            preview: self.preview.map(|rgb| rgb.map(&value)),
             ..SpectralTexel::default()
         };
         for &(channel, number) in &self.channels {
@@ -113,7 +134,7 @@ impl SpectralPicture {
             let pairs = rising_pairs(nm.len());
             texel.reradiation = pairs.map(|[i, o]| (nm[i], nm[o], matrix[o][i])).collect();
         }
-        Ok(texel)
+        texel
     }
 }
 
