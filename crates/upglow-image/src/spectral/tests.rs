@@ -135,6 +135,10 @@ fn reads_as_the_full_one(model: &Model) {
             assert_eq!(full.at(x, y).unwrap(), compact.at(x, y).unwrap());
         }
     }
+    for picture in [&mut full, &mut compact] {
+        let row = picture.row(1, 2).unwrap();
+        assert_eq!(row, [0, 2].map(|x| picture.at(x, 1).unwrap()));
+    }
     let texel = full.at(2, 1).unwrap();
     assert!(texel.reradiation.iter().any(|(.., share)| *share > 0.01));
     assert!(texel.reflectance.is_sorted_by(|a, b| a.0 < b.0));
