@@ -6,6 +6,7 @@ mod support;
 
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::TcpStream;
+use std::os::unix::fs::PermissionsExt as _;
 use std::process::{Child, ChildStdout, Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -126,7 +127,10 @@ fn ctrl_c_and_termination_end_it_and_its_files_are_gone() {
         explorer.json("POST", "build", options.to_string().as_bytes());
         let _kept = TcpStream::connect(&explorer.host).unwrap();
         let temporary = folder.path().join("temporary");
-        assert_eq!(temporary.read_dir().unwrap().count(), 1);
+        let folders: Vec<_> = temporary.read_dir().unwrap().flatten().collect();
+        assert_eq!(folders.len(), 1);
+        // For nobody else to read.
+        assert_eq!(folders[0].metadata().unwrap().permissions().mode() & 0o777, 0o700);
         assert_eq!(explorer.end(signal), (Some(0), String::new()));
         assert_eq!(temporary.read_dir().unwrap().count(), 0, "{signal}");
     }

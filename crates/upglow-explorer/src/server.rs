@@ -141,7 +141,7 @@ impl Server {
             let _context = runtime.enter();
             tokio::net::TcpListener::from_std(listener)?
         };
-        let folder = tempfile::Builder::new().prefix("upglow-explore-").tempdir()?;
+        let folder = private_folder()?;
         let shared = Arc::new(Shared {
             page: page.into(),
             shelf: Shelf::new(Held::new(0, cube, name)?),
@@ -177,6 +177,17 @@ impl Server {
         runtime.shutdown_timeout(END_TIME);
         folder.close()
     }
+}
+
+/// A new folder for this user alone, in the system's temporary one.
+fn private_folder() -> io::Result<TempDir> {
+    let mut builder = tempfile::Builder::new();
+    #[cfg(unix)]
+    let builder = {
+        use std::os::unix::fs::PermissionsExt as _;
+        builder.permissions(std::fs::Permissions::from_mode(0o700))
+    };
+    builder.prefix("upglow-explore-").tempdir()
 }
 
 async fn accept(
