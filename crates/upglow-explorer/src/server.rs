@@ -61,7 +61,7 @@ const HEAD_TIME: Duration = Duration::from_secs(15);
 const HEAD_BYTES: usize = 16 << 10;
 /// Pixels of a dropped picture: more takes a minute to read.
 const MOST_PIXELS: usize = 1 << 28;
-/// How often the server looks whether it shall end.
+/// How often the server looks whether it must end.
 const STOP_TIME: Duration = Duration::from_millis(100);
 /// The time for work that is left when the server ends.
 const END_TIME: Duration = Duration::from_secs(2);

@@ -84,7 +84,7 @@ impl Guard {
         Ok(())
     }
 
-    /// The name that the client knows this server by; `None` if it is none of this server's.
+    /// The name that the client knows this server by; `None` for any other name.
     fn host<'g>(&'g self, uri: &Uri, headers: &HeaderMap) -> Option<&'g str> {
         let mut named = headers.get_all(header::HOST).iter();
         let (Some(name), None) = (named.next(), named.next()) else { return None };

@@ -191,7 +191,7 @@ impl Layout {
     }
 }
 
-/// Numbers that are none say nothing.
+/// Invalid numbers count as 0.
 fn finite(value: f32) -> f64 {
     if value.is_finite() { value.into() } else { 0.0 }
 }
