@@ -14,6 +14,8 @@ const USUAL = 32;
 // The sliders of slopes are logarithmic, 1/nm.
 const SLOPES = [0.002, 0.2];
 
+// What the program calls files that were opened: this for all dyes, this and a name for a light.
+const MINE = "dropped";
 const FLUORESCENT = ["film", "dyes", "analytic"];
 
 // Options that are one of a list, with the models that they apply to.
@@ -41,6 +43,8 @@ export function makeBuild(root, app) {
     const comparison = makeComparison(app);
     root.append(form);
     let choices = null;
+    // Dyes that were opened.
+    let mine = null;
     // Options that are not as the preset has them.
     const given = {};
     let resolution = USUAL;
@@ -57,8 +61,8 @@ export function makeBuild(root, app) {
     const wordsOf = (name) => ({
         "--preset": () => choices.presets.map((preset) => preset.name),
         "--space": () => choices.spaces,
-        "--illuminant": () => choices.lights,
-        "--dyes": () => choices.dye_sets.map((set) => set.name),
+        "--illuminant": () => [...choices.lights, ...choices.dropped_lights],
+        "--dyes": () => [...choices.dye_sets.map((set) => set.name), ...(mine ? [MINE] : [])],
     })[name]?.() ?? optionOf(name).words;
 
     const live = element("input", { type: "checkbox", id: "build-live" });
@@ -94,10 +98,15 @@ export function makeBuild(root, app) {
                 const first = usual ?? (ofPreset ? `${ofPreset} (preset)` : "default");
                 select.replaceChildren(
                     element("option", { value: "" }, first),
-                    ...words.map((word) => element("option", { value: word }, word)));
+                    ...words.map((word) => element("option", { value: word }, shownWord(word))));
                 select.value = given[name] ?? "";
             },
         };
+    }
+
+    // Of files that were opened, the names.
+    function shownWord(word) {
+        return word === MINE ? `my dyes: ${mine.dyes.join(", ")}` : word.replace(`${MINE}:`, "opened: ");
     }
 
     function slider([name, label, models]) {
@@ -221,6 +230,9 @@ export function makeBuild(root, app) {
         const isLive = live.checked;
         const size = isLive ? MOVING : resolution;
         const options = Object.fromEntries([...entries, ["--resolution", String(size)]]);
+        if (options["--dyes"] === MINE && mine.normalize) {
+            options["--normalize-dyes"] = "";
+        }
         try {
             job = await postJson("build", { options });
             command.say(job.command);
@@ -278,19 +290,19 @@ export function makeBuild(root, app) {
     return {
         open: () => load().catch((error) => app.say(error.message)),
         // Files that were opened are among the choices.
-        refresh: async () => {
+        async refresh(dyes = mine) {
+            mine = dyes;
             if (choices) {
                 choices = await getJson("choices");
                 drawForm();
             }
         },
-        choose: (name, value) => load().then(() => change(name, value)),
         draw: comparison.draw,
     };
 }
 
 // A control with its label, and a line for what is wrong with its value.
-function fieldOf(label, control, wide) {
+export function fieldOf(label, control, wide) {
     const wrong = element("p", { class: "field-error", id: `${control.id}-wrong`, hidden: "" });
     const root = element("div", { class: wide ? "field wide" : "field" },
         element("label", { for: control.id, class: "note" }, label), control, ...(wide ? [wide] : []), wrong);

@@ -4,6 +4,7 @@ import { canvasContext, cssColor, de2000, encoded, decoded, newImage, onScreen }
 import { set } from "./state.js";
 import { NEEDS_PROGRAM, getBytes, getJson, postFile, sampledOf, served } from "./server.js";
 import { makeLight, relit } from "./cube.js";
+import { fieldOf } from "./build.js";
 import { followPointer } from "./picker.js";
 import { percent } from "./heat.js";
 import { element } from "./dom.js";
@@ -33,18 +34,25 @@ export function makeDrop(root, app, panels) {
     const kinds = served
         ? "A picture (EXR, TIFF, PNG, JPEG, HDR, TGA), a spectral or bispectral EXR, a light or a dye as CSV."
         : `A PNG or JPEG, read as sRGB. For other pictures, spectra, lights and dyes: ${NEEDS_PROGRAM}`;
+    const reading = makeReading(() => take(file));
     root.append(
         element("div", { class: "drop-choose" },
             element("label", { for: "drop-file", class: "drop-label" }, "Choose a file"), chooser,
             element("span", { class: "note" }, "or drop one anywhere on the page")),
-        element("p", { class: "note" }, kinds), status, shown);
+        element("p", { class: "note" }, kinds), status, reading.root, shown);
+    // The file that is shown.
+    let file = null;
     let view = null;
     let latest = 0;
     // Lights of files, which every cube is to have.
     const lights = [];
     let seenCube = null;
 
-    async function take(file) {
+    async function take(taken) {
+        if (file !== taken) {
+            file = taken;
+            reading.forget();
+        }
         latest += 1;
         const ticket = latest;
         const say = (line) => {
@@ -60,53 +68,64 @@ export function makeDrop(root, app, panels) {
             }
         };
         panels.open();
-        say(`Reading ${file.name} …`);
+        say(`Reading ${taken.name} …`);
         try {
-            say(await opened(file, show));
+            say(await opened(taken, show));
         } catch (error) {
-            say(`${file.name}: ${error.message}`);
+            // Refusals name the file already.
+            const { message } = error;
+            say(message.startsWith(taken.name) ? message : `${taken.name}: ${message}`);
         }
     }
 
     // Shows a file, and returns a line that says what it is.
-    async function opened(file, show) {
-        const name = encodeURIComponent(file.name);
+    async function opened(taken, show) {
+        const query = new URLSearchParams({ name: taken.name, cube: app.cube.id });
         if (!served) {
-            show(makePicture(app, await picturedByBrowser(file)));
-            return `${file.name}, read by the browser as sRGB.`;
+            show(makePicture(app, await picturedByBrowser(taken)));
+            return `${taken.name}, read by the browser as sRGB.`;
         }
-        const head = new TextDecoder("latin1").decode(await file.slice(0, HEAD_BYTES).arrayBuffer());
-        if (/\.csv$/i.test(file.name)) {
-            return head.includes("absorption") ? openDye(name, file) : openLight(name, file);
+        const head = new TextDecoder("latin1").decode(await taken.slice(0, HEAD_BYTES).arrayBuffer());
+        if (/\.csv$/i.test(taken.name)) {
+            return head.includes("absorption") ? openDye(query, taken) : openLight(taken);
         }
-        if (head.includes("spectralLayoutVersion")) {
-            const answer = await postFile(`spectral?name=${name}&cube=${app.cube.id}`, file);
-            const texels = new Float32Array(await getBytes(`drop/${answer.id}.data`));
-            show(makeSpectralPicture(app, { ...answer, texels, space: app.spaces[0] }));
-            return `${file.name}: ${answer.text}`;
+        const isSpectral = head.includes("spectralLayoutVersion");
+        await reading.offer(isSpectral ? ["unit"] : ["space", "encoding"]);
+        for (const [name, value] of reading.values()) {
+            query.set(name, value);
         }
-        const answer = await postFile(`picture?name=${name}&cube=${app.cube.id}`, file);
+        const answer = await postFile(`${isSpectral ? "spectral" : "picture"}?${query}`, taken);
         const texels = new Float32Array(await getBytes(`drop/${answer.id}.data`));
-        show(makePicture(app, { ...answer, texels, space: app.spaces[0] }));
-        return `${file.name}: ${answer.text}`;
+        const { id, step, columns: width, rows: height } = answer;
+        const picture = { id, step, width, height, texels, space: app.spaces[0] };
+        show(isSpectral ? makeSpectralPicture(app, picture) : makePicture(app, picture));
+        const size = `${answer.width} × ${answer.height} texels`;
+        if (!isSpectral) {
+            return `${taken.name}, ${size}: ${answer.sentence}.`;
+        }
+        const [first, last] = [answer.wavelengths_nm.at(0), answer.wavelengths_nm.at(-1)];
+        return [`${taken.name}, ${size}: ${answer.kind}, ${first} to ${last} nm.`, ...answer.notes].join(" ");
     }
 
-    async function openLight(name, file) {
-        const added = await addLight(app.cube, name, file);
-        lights.push({ name, file });
-        set({ light: added });
-        return `The light ${added} is chosen. It is also among those of Build.`;
-    }
-
-    async function openDye(name, file) {
-        const answer = await postFile(`dye?name=${name}`, file);
+    async function openLight(taken) {
+        reading.forget();
+        const added = await addLight(app.cube, taken);
+        lights.push(taken);
         await panels.build.refresh();
-        return `${answer.text} Build can use it.`;
+        set({ light: added });
+        return `The light ${added} is chosen. Build has it, too.`;
     }
 
-    async function addLight(cube, name, file) {
-        const { nm, irradiance, weights, power, ...description } =
-            await postFile(`light?name=${name}&cube=${cube.id}`, file);
+    async function openDye(query, taken) {
+        reading.forget();
+        const { name, dyes, normalize } = await postFile(`dye?${query}`, taken);
+        await panels.build.refresh({ dyes, normalize });
+        return `The dye ${name} is one of ${dyes.length} that Build takes as my dyes.`;
+    }
+
+    async function addLight(cube, taken) {
+        const query = new URLSearchParams({ name: taken.name, cube: cube.id });
+        const { nm, irradiance, weights, power, ...description } = await postFile(`light?${query}`, taken);
         const light = makeLight(description, nm, irradiance, weights.flat(), power);
         const at = cube.lights.findIndex((other) => other.name === light.name);
         cube.lights.splice(at > 0 ? at : cube.lights.length, at > 0 ? 1 : 0, light);
@@ -145,11 +164,48 @@ export function makeDrop(root, app, panels) {
             view?.draw(now);
             if (seenCube !== now.cube) {
                 seenCube = now.cube;
-                for (const { name, file } of lights) {
-                    addLight(now.cube, name, file).then(() => set({}), (error) => app.say(error.message));
+                for (const light of lights) {
+                    addLight(now.cube, light).then(() => set({}), (error) => app.say(error.message));
                 }
             }
         },
+    };
+}
+
+// How the numbers of a file are meant, where the user knows better than the file says.
+function makeReading(change) {
+    const root = element("div", { class: "build-form drop-reading", hidden: "" });
+    const words = {
+        space: ["RGB space", (choices) => choices.spaces],
+        encoding: ["Encoding", (choices) => choices.encodings],
+        unit: ["Unit of re-radiation", (choices) => choices.bispectral_units],
+    };
+    let selects = [];
+    return {
+        root,
+        forget() {
+            selects = [];
+            root.hidden = true;
+        },
+        async offer(names) {
+            if (selects.length > 0) {
+                return;
+            }
+            const choices = await getJson("choices");
+            selects = names.map((name) => {
+                const [label, list] = words[name];
+                const select = element("select", { id: `drop-${name}` },
+                    element("option", { value: "" }, "as the file says"),
+                    ...list(choices).map((word) => element("option", { value: word }, word)));
+                select.addEventListener("change", change);
+                return { name, select, field: fieldOf(label, select).root };
+            });
+            root.replaceChildren(...selects.map(({ field }) => field));
+            root.hidden = false;
+        },
+        values: () => selects
+            .map(({ name, select }) => [name, select.value])
+            .filter(([, value]) => value !== ""),
     };
 }
 
@@ -373,7 +429,7 @@ function makePicture(app, { width, height, step, texels, space }) {
 }
 
 // A picture of spectra; a pixel's material takes the place of the cube's.
-function makeSpectralPicture(app, { id, width, height, step, texels, space, file }) {
+function makeSpectralPicture(app, { id, width, height, step, texels, space }) {
     const view = makeTexels(width, height, "Picture: arrow keys move; charts show the pixel", pick);
     const root = element("div", { class: "opened" },
         element("div", { class: "pictures" }, view.root),
@@ -401,12 +457,12 @@ function makeSpectralPicture(app, { id, width, height, step, texels, space, file
             const [x, y] = next.map((v) => v * step);
             next = null;
             try {
-                const { text: words, ...answer } = await getJson(`drop/${id}/pixel?x=${x}&y=${y}`);
-                const sampled = sampledOf(answer);
                 const { cube, now } = app;
+                const answer = await getJson(`drop/${id}/pixel?x=${x}&y=${y}&cube=${cube.id}`);
+                const sampled = sampledOf(answer);
                 app.goTo(relit(sampled, cube.lights[0], 1, now.below));
                 app.show({ sampled, title: answer.label });
-                text.textContent = `Pixel ${x}, ${y}. ${words ?? ""}`;
+                text.textContent = `Pixel ${x}, ${y}: charts show its spectrum, under every light.`;
             } catch (error) {
                 text.textContent = error.message;
             }
