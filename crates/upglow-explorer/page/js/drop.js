@@ -244,7 +244,7 @@ function makeTexels(width, height, label, pick) {
     const named = { tabindex: "0", role: "application", "aria-label": label };
     const root = element("div", { class: "texels", ...named }, canvas, mark);
     // Two of them fit into the panel, one below the other.
-    root.style.setProperty("max-width", `calc(32vh * ${width / height})`);
+    root.style.setProperty("max-width", `calc(30vh * ${width / height})`);
     let at = [Math.floor(width / 2), Math.floor(height / 2)];
     const within = (v, most) => Math.min(Math.max(v, 0), most - 1);
     const go = (x, y) => pick([within(x, width), within(y, height)]);

@@ -1,6 +1,6 @@
 // Loads the cube, and redraws every view when the state changes.
 
-import { SCREEN_NAME } from "./color.js";
+import { SCREEN_NAME, de2000 } from "./color.js";
 import { readAddress, set, state, watch } from "./state.js";
 import { getBytes, getText, served } from "./server.js";
 import { Cube, relit } from "./cube.js";
@@ -206,7 +206,7 @@ start().catch((error) => {
 });
 // For the console, and for tests.
 globalThis.explorer = {
-    app, set, state,
+    app, de2000, set, state,
     // XYZ of the material under each light, as the slider of ultraviolet leaves it.
     colorsUnderLights() {
         const { cube, sampled, below } = compute();

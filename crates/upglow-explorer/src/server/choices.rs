@@ -6,6 +6,10 @@ use serde_json::{Value, json};
 use upglow::{DyeSet, Model};
 use upglow_color::{Choice as _, Illuminant, MeasuredDye, Observer, RgbSpace};
 use upglow_fit::{FitOptions, Preset};
+use upglow_image::{BispectralUnit, Encoding};
+
+/// Encodings that pictures have without saying so.
+const ENCODINGS: [Encoding; 3] = [Encoding::Linear, Encoding::Srgb, Encoding::Bt709];
 
 /// The built-in presets, spaces, lights, observers and dyes.
 pub(super) fn built_in() -> Value {
@@ -23,6 +27,8 @@ pub(super) fn built_in() -> Value {
         "lights": Illuminant::NAMES,
         "observers": Observer::NAMES,
         "dye_sets": dye_sets.collect::<Vec<_>>(),
+        "encodings": ENCODINGS.map(|encoding| encoding.to_string()),
+        "bispectral_units": BispectralUnit::ALL.iter().map(|unit| unit.name()).collect::<Vec<_>>(),
     })
 }
 
