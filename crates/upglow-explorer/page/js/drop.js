@@ -90,7 +90,7 @@ export function makeDrop(root, app, panels) {
             return head.includes("absorption") ? openDye(query, taken) : openLight(taken);
         }
         const isSpectral = head.includes("spectralLayoutVersion");
-        await reading.offer(isSpectral ? ["unit"] : ["space", "encoding"]);
+        await reading.offer(isSpectral ? ["unit"] : ["space", "encoding", "alpha", "layer"]);
         for (const [name, value] of reading.values()) {
             query.set(name, value);
         }
@@ -128,7 +128,12 @@ export function makeDrop(root, app, panels) {
         const { nm, irradiance, weights, power, ...description } = await postFile(`light?${query}`, taken);
         const light = makeLight(description, nm, irradiance, weights.flat(), power);
         const at = cube.lights.findIndex((other) => other.name === light.name);
-        cube.lights.splice(at > 0 ? at : cube.lights.length, at > 0 ? 1 : 0, light);
+        if (at < 0) {
+            cube.lights.push(light);
+        } else if (at > 0) {
+            cube.lights[at] = light;
+        }
+        // The first is the cube's own: it was built under this light.
         return light.name;
     }
 
@@ -178,6 +183,8 @@ function makeReading(change) {
     const words = {
         space: ["RGB space", (choices) => choices.spaces],
         encoding: ["Encoding", (choices) => choices.encodings],
+        alpha: ["Alpha", (choices) => choices.alphas],
+        layer: ["Layer"],
         unit: ["Unit of re-radiation", (choices) => choices.bispectral_units],
     };
     let selects = [];
@@ -194,9 +201,11 @@ function makeReading(change) {
             const choices = await getJson("choices");
             selects = names.map((name) => {
                 const [label, list] = words[name];
-                const select = element("select", { id: `drop-${name}` },
-                    element("option", { value: "" }, "as the file says"),
-                    ...list(choices).map((word) => element("option", { value: word }, word)));
+                const id = `drop-${name}`;
+                const select = list
+                    ? element("select", { id }, element("option", { value: "" }, "as the file says"),
+                        ...list(choices).map((word) => element("option", { value: word }, word)))
+                    : element("input", { id, type: "text", placeholder: "the one that there is" });
                 select.addEventListener("change", change);
                 return { name, select, field: fieldOf(label, select).root };
             });

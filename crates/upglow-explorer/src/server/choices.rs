@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use upglow::{DyeSet, Model};
 use upglow_color::{Choice as _, Illuminant, MeasuredDye, Observer, RgbSpace};
 use upglow_fit::{FitOptions, Preset};
-use upglow_image::{BispectralUnit, Encoding};
+use upglow_image::{BispectralUnit, DeclaredAlpha, Encoding};
 
 /// Encodings that pictures have without saying so.
 const ENCODINGS: [Encoding; 3] = [Encoding::Linear, Encoding::Srgb, Encoding::Bt709];
@@ -28,6 +28,7 @@ pub(super) fn built_in() -> Value {
         "observers": Observer::NAMES,
         "dye_sets": dye_sets.collect::<Vec<_>>(),
         "encodings": ENCODINGS.map(|encoding| encoding.to_string()),
+        "alphas": DeclaredAlpha::ALL.iter().map(|alpha| alpha.name()).collect::<Vec<_>>(),
         "bispectral_units": BispectralUnit::ALL.iter().map(|unit| unit.name()).collect::<Vec<_>>(),
     })
 }
