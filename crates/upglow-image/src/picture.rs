@@ -84,7 +84,11 @@ impl Picture {
     }
 
     /// Opens a picture with the declared layer and use of alpha.
-    pub(crate) fn open_as(path: &Path, declared: &Declared) -> Result<Self, PictureError> {
+    ///
+    /// # Errors
+    ///
+    /// As [`Picture::open`].
+    pub fn open_as(path: &Path, declared: &Declared) -> Result<Self, PictureError> {
         let mut found = Vec::new();
         File::open(path)?.take(4).read_to_end(&mut found)?;
         let layer = declared.layer.as_deref();

@@ -10,7 +10,7 @@ use axum::http::Uri;
 use axum::routing::{get, post};
 use serde_json::json;
 use upglow_color::{Choice as _, Grid, RgbSpace};
-use upglow_image::{BispectralUnit, Declared, Encoding, Excerpt};
+use upglow_image::{BispectralUnit, Declared, DeclaredAlpha, Encoding, Excerpt};
 
 use super::answer::{Refusal, binary, json as answer, work};
 use super::body::{self, Limit};
@@ -82,7 +82,8 @@ async fn picture(State(shared): State<Arc<Shared>>, uri: Uri, body: Body) -> Ans
     let declared = Declared {
         space: query.read("space", RgbSpace::named)?,
         encoding: query.read("encoding", str::parse::<Encoding>)?,
-        ..Declared::default()
+        alpha: query.read("alpha", DeclaredAlpha::named)?,
+        layer: query.text("layer").map(String::from),
     };
     let (name, held) = (query.name(), shared.shelf.get(query.cube()?)?);
     // One at a time, so that one file's memory is the most that files need.
@@ -94,7 +95,8 @@ async fn picture(State(shared): State<Arc<Shared>>, uri: Uri, body: Body) -> Ans
         let _turn = turn;
         let refused =
             |error: &dyn ToString| Refusal::unusable(format!("{name}: {}", error.to_string()));
-        let opened = upglow_image::Picture::open(&path).map_err(|error| refused(&error))?;
+        let opened =
+            upglow_image::Picture::open_as(&path, &declared).map_err(|error| refused(&error))?;
         super::check_size(&name, opened.size())?;
         drop(opened);
         let found = Excerpt::read(&path, &declared, held.cube.contract(), PICTURE_SIDE)
