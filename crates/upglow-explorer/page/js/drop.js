@@ -73,6 +73,7 @@ export function makeDrop(root, app, panels) {
             say(await opened(taken, show));
         } catch (error) {
             // Refusals name the file already.
+            reading.root.open = true;
             const { message } = error;
             say(message.startsWith(taken.name) ? message : `${taken.name}: ${message}`);
         }
@@ -179,7 +180,9 @@ export function makeDrop(root, app, panels) {
 
 // How the numbers of a file are meant, where the user knows better than the file says.
 function makeReading(change) {
-    const root = element("div", { class: "build-form drop-reading", hidden: "" });
+    const fields = element("div", { class: "build-form" });
+    const root = element("details", { class: "drop-reading", hidden: "" },
+        element("summary", { class: "note" }, "What the file does not say"), fields);
     const words = {
         space: ["RGB space", (choices) => choices.spaces],
         encoding: ["Encoding", (choices) => choices.encodings],
@@ -209,8 +212,9 @@ function makeReading(change) {
                 select.addEventListener("change", change);
                 return { name, select, field: fieldOf(label, select).root };
             });
-            root.replaceChildren(...selects.map(({ field }) => field));
+            fields.replaceChildren(...selects.map(({ field }) => field));
             root.hidden = false;
+            root.open = false;
         },
         values: () => selects
             .map(({ name, select }) => [name, select.value])

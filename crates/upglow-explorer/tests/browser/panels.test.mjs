@@ -214,6 +214,53 @@ test("a picture is shown beside what the cube makes of it, and a texel is the co
     }
 });
 
+const opened = (page) => page.waitForFunction(() => {
+    const line = document.querySelector(".drop-status").textContent;
+    return line !== "" && !line.startsWith("Reading");
+});
+
+test("a light is chosen, a dye can be built with, and a pixel shows its spectrum", async () => {
+    const { page, told, close } = await openPage(browser, served.address);
+    const lines = (row) => Array.from({ length: 107 }, (_, i) => row(300 + 5 * i)).join("\n");
+    const bell = (nm, peak) => Math.exp(-(((nm - peak) / 30) ** 2)).toFixed(6);
+    const light = path.join(FOLDER, "my lamp.csv");
+    fs.writeFileSync(light, `wavelength_nm,power\n${lines((nm) => `${nm},${bell(nm, 600)}`)}\n`);
+    await page.setInputFiles("#drop-file", light);
+    await opened(page);
+    assert.equal(await page.evaluate(() => globalThis.explorer.app.now.light.name), "my lamp");
+
+    const dye = path.join(FOLDER, "mine.csv");
+    const row = (nm) => `${nm},${bell(nm, 450)},${bell(nm, 520)}`;
+    fs.writeFileSync(dye, `wavelength_nm,absorption,emission\n${lines(row)}\n`);
+    await page.setInputFiles("#drop-file", dye);
+    await page.waitForFunction(() => document.querySelector(".drop-status").textContent.startsWith("The dye mine"));
+    await page.click("#open-build");
+    await page.selectOption("#build--dyes", "dropped");
+    await page.selectOption("#build--illuminant", "D65");
+    await page.click(".build-sizes button:text-is('17')");
+    await page.click("#build button[type=submit]");
+    await built(page);
+    await page.waitForFunction(() => globalThis.explorer.app.cube.meta.dyes.join() === "mine");
+    // The light of the file is seen by the new cube, too.
+    await page.waitForFunction(() => globalThis.explorer.app.now.light.name === "my lamp");
+
+    const [picture, spectra] = ["one.png", "one.exr"].map((name) => path.join(FOLDER, name));
+    fs.writeFileSync(picture, png([[RED]]));
+    upglow("bake", CUBE, picture, "--output", spectra, "--as", "spectral", "--quiet");
+    await page.setInputFiles("#drop-file", spectra);
+    await page.waitForFunction(() => document.querySelector(".drop-status").textContent.startsWith("one.exr, 1 × 1"));
+    await page.focus(".texels");
+    await page.keyboard.press("Enter");
+    await page.waitForFunction(() => globalThis.explorer.app.now.shown?.title === "one.exr at 0,0");
+    const { sampled } = await page.evaluate(() => {
+        const { now } = globalThis.explorer.app;
+        return { sampled: Array.from(now.sampled.reflectance) };
+    });
+    assert.ok(sampled[350] > 0.3 && sampled[250] < 0.1, `${sampled[350]} at 650 nm, ${sampled[250]} at 550 nm`);
+    assert.deepEqual(told, []);
+    await close();
+});
+
 test("a file that is no picture is refused in one line", async () => {
     const file = path.join(FOLDER, "damaged.png");
     fs.writeFileSync(file, png([[RED]]).subarray(0, 40));
