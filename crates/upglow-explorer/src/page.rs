@@ -9,6 +9,9 @@ use crate::cube_data::{CubeData, ExplorerError};
 const HTML: &str = include_str!("../page/index.html");
 const STYLE: &str = include_str!("../page/style.css");
 
+/// Signs of the style, in none of its texts, that mean the same without the spaces beside them.
+const SPACED: [&str; 5] = [": ", "; ", ", ", " { ", " }"];
+
 /// Each after those that it imports.
 const SCRIPTS: [&str; 17] = [
     include_str!("../page/js/color.js"),
@@ -61,6 +64,7 @@ fn embedded(id: &str, text: &str) -> String {
 fn page(data: &str, functions: Option<&str>) -> String {
     let script: String = functions.into_iter().chain(SCRIPTS).map(in_one_scope).collect();
     let style: String = plain_lines(STYLE).flat_map(|line| [line, "\n"]).collect();
+    let style = SPACED.iter().fold(style, |style, sign| style.replace(sign, sign.trim()));
     HTML.replace("/*STYLE*/", &style)
         .replace("<!--DATA-->", data)
         // Last, so that nothing in it is taken for a place of the others.
