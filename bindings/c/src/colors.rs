@@ -20,8 +20,11 @@ pub struct UpglowColors {
 
 const _: () = assert_shared_by_threads::<UpglowColors>();
 
-/// Computes the colors of a cube's materials under a light: "D65", "D60", "D55", "D50", "A", "E",
-/// "FL2", "FL11", "HP1" or "LED-B3", or under the cube's own if `illuminant` is null.
+/// Computes the colors of a cube's materials under a built-in light, or under the cube's own if
+/// `illuminant` is null: "D50", "D55", "D60", "D65", "D75", "A", "E", "FL1" to "FL12", "FL3.1" to
+/// "FL3.15", "HP1" to "HP5", "LED-B1" to "LED-B5", "LED-BH1", "LED-RGB1", "LED-V1", "LED-V2", "ID50",
+/// "ID65", "M0", "M1", "M2", a blackbody such as "3000K" or daylight such as "D6200K". Lamps have no
+/// power below 380 nm: what dyes absorb there is not counted.
 ///
 /// `*colors` receives colors that the caller owns and must destroy with `upglow_colors_destroy`. All
 /// memory for `upglow_xyz` is allocated here: 16 bytes per node of the cube.
@@ -84,7 +87,7 @@ pub unsafe extern "C" fn upglow_colors_create_sampled(
             unsafe { (slice(lambda_nm, count, "lambda_nm")?, slice(power, count, "power")?) };
         let doubles = |values: &[f32]| values.iter().map(|&v| f64::from(v)).collect::<Vec<_>>();
         let [nm, power] = [nm, power].map(doubles);
-        let light = Illuminant::from_samples("sampled", &nm, &power)?;
+        let light = Illuminant::from_samples("sampled", &nm, &power, None)?;
         output.write(Box::into_raw(UpglowColors::try_new(cube, light)?));
         Ok(())
     })

@@ -12,6 +12,7 @@ use upglow_fit::CubeSummary;
 
 use crate::contract::Contract;
 use crate::errors::{os_error, value_error};
+use crate::illuminant::Illuminant;
 use crate::nodes::{Arrays, arrays};
 
 /// One material for each node of a grid over RGB.
@@ -98,6 +99,13 @@ impl Cube {
     /// The file's header, as JSON.
     fn header_json(&self) -> String {
         self.cube.header_json()
+    }
+
+    /// What is to say about its materials under a light, or its own.
+    #[pyo3(signature = (light=None))]
+    fn missing_ultraviolet(&self, light: Option<&Illuminant>) -> Option<String> {
+        let light = light.map_or(&self.cube.contract().illuminant, |light| &light.0);
+        self.cube.model().missing_ultraviolet(light).map(|missing| missing.to_string())
     }
 
     /// `reflectance`, `dyes`, `fluorescence` and `de2000` of every node, one per row.

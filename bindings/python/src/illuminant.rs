@@ -4,22 +4,38 @@ use std::path::PathBuf;
 
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
-use upglow_color::Grid;
+use upglow_color::{Ends, Grid, IlluminantError};
 
 use crate::errors::value_error;
 use crate::observer::Observer;
+use crate::word::Word;
 
 /// A named light: relative spectral power from 300 to 830 nm by 1 nm.
 #[pyclass(frozen, module = "upglow._upglow")]
 #[derive(Debug)]
 pub(crate) struct Illuminant(pub(crate) upglow_color::Illuminant);
 
+impl Illuminant {
+    /// The light of samples. An error starts with `place` and names the argument which could mend it.
+    fn sampled(
+        light: Result<upglow_color::Illuminant, IlluminantError>,
+        ends: Option<Ends>,
+        place: &str,
+    ) -> PyResult<Self> {
+        light.map(Self).map_err(|error| {
+            let has_choice = ends.is_none() && error.lacks_ends();
+            let hint = "; ends=\"zero\" or \"hold\" says what is beyond";
+            value_error(format_args!("{place}{error}{}", if has_choice { hint } else { "" }))
+        })
+    }
+}
+
 #[pymethods]
 impl Illuminant {
     /// The names of the built-in lights.
     #[staticmethod]
     fn names() -> Vec<&'static str> {
-        upglow_color::Illuminant::NAMES.to_vec()
+        upglow_color::Illuminant::names()
     }
 
     /// The built-in light of this name.
@@ -30,27 +46,33 @@ impl Illuminant {
 
     /// The light in CSV text with the header `wavelength_nm,power`.
     #[staticmethod]
-    fn from_csv(name: &str, text: &str) -> PyResult<Self> {
-        upglow_color::Illuminant::from_csv(name, text).map(Self).map_err(value_error)
+    #[pyo3(signature = (name, text, ends=None))]
+    fn from_csv(name: &str, text: &str, ends: Option<Word<Ends>>) -> PyResult<Self> {
+        let ends = ends.map(|Word(ends)| ends);
+        Self::sampled(upglow_color::Illuminant::from_csv(name, text, ends), ends, "")
     }
 
     /// The light in the CSV text of the file at this path, named after it.
     #[staticmethod]
-    fn from_csv_file(path: PathBuf, text: &str) -> PyResult<Self> {
-        upglow_color::Illuminant::from_csv_file(&path, text).map(Self).map_err(value_error)
+    #[pyo3(signature = (path, text, ends=None))]
+    fn from_csv_file(path: PathBuf, text: &str, ends: Option<Word<Ends>>) -> PyResult<Self> {
+        let ends = ends.map(|Word(ends)| ends);
+        Self::sampled(upglow_color::Illuminant::from_csv_file(&path, text, ends), ends, "")
     }
 
     /// The light with these samples; wavelengths are nm.
     #[staticmethod]
+    #[pyo3(signature = (name, wavelengths_nm, power, ends=None))]
     fn from_samples(
         name: &str,
         wavelengths_nm: PyReadonlyArray1<'_, f64>,
         power: PyReadonlyArray1<'_, f64>,
+        ends: Option<Word<Ends>>,
     ) -> PyResult<Self> {
         let (nm, power) = (wavelengths_nm.as_slice()?, power.as_slice()?);
-        upglow_color::Illuminant::from_samples(name, nm, power)
-            .map(Self)
-            .map_err(|error| value_error(format_args!("{name}: {error}")))
+        let ends = ends.map(|Word(ends)| ends);
+        let light = upglow_color::Illuminant::from_samples(name, nm, power, ends);
+        Self::sampled(light, ends, &format!("{name}: "))
     }
 
     /// A light with one Gaussian line; wavelengths are nm.
@@ -69,6 +91,12 @@ impl Illuminant {
     #[getter]
     fn power<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, self.0.power().values())
+    }
+
+    /// First and last wavelength at which the power is known, nm.
+    #[getter]
+    fn given_nm(&self) -> [u32; 2] {
+        self.0.given_nm()
     }
 
     /// Relative power in each band of a grid (first, last, step: nm).

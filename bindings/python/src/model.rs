@@ -10,6 +10,7 @@ use upglow_color::MeasuredDye;
 use upglow_fit::Preset;
 
 use crate::errors::{os_error, value_error};
+use crate::illuminant::Illuminant;
 use crate::word::Word;
 
 /// A ring of measured dyes.
@@ -159,6 +160,11 @@ impl Model {
     #[getter]
     fn name(&self) -> &'static str {
         self.0.name()
+    }
+
+    /// What is to say about its materials under a light.
+    fn missing_ultraviolet(&self, light: &Illuminant) -> Option<String> {
+        self.0.missing_ultraviolet(&light.0).map(|missing| missing.to_string())
     }
 
     /// Dyes without a published quantum yield; with `measured`, their yield is taken as 1.

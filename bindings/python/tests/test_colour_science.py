@@ -96,6 +96,24 @@ def test_d65_is_colour_sciences() -> None:
     assert np.abs(theirs.values - ours).max() < 1e-3
 
 
+def test_its_lamps_and_observers_are_ours() -> None:
+    lamps = [name for name in upglow.Illuminant.names() if name in colour.SDS_ILLUMINANTS]
+    lamps = [name for name in lamps if name[0] in "FHLI"]
+    assert len(lamps) == 43
+    for name in lamps:
+        ours = upglow.Illuminant(name)
+        theirs = upglow.Illuminant(colour.SDS_ILLUMINANTS[name], ends="zero")
+        assert (theirs.name, theirs.given_nm) == (name, ours.given_nm)
+        assert np.abs(theirs.power - ours.power).max() < 1e-9
+    for ours, theirs in (
+        ("cie-1964-10deg", "CIE 1964 10 Degree Standard Observer"),
+        ("cie-2015-2deg", "CIE 2015 2 Degree Standard Observer"),
+        ("cie-2015-10deg", "CIE 2015 10 Degree Standard Observer"),
+    ):
+        difference = upglow.Observer(colour.MSDS_CMFS[theirs]).matching
+        assert np.abs(difference - upglow.Observer(ours).matching).max() < 1e-12
+
+
 def test_the_contract_is_colour_sciences(cube) -> None:
     space = colour.RGB_COLOURSPACES["ACEScg"]
     assert np.allclose(cube.contract.primaries_xy, space.primaries)
@@ -112,9 +130,9 @@ def test_its_lights_are_taken_once_they_cover_the_range(cube) -> None:
     light = colour.SDS_ILLUMINANTS["D65"]
     with pytest.raises(ValueError, match="D65: covers 300 to 780 nm, expected at least"):
         upglow.Contract(illuminant=light)
-    longer = light.copy().extrapolate(colour.SpectralShape(300, 830, 5))
+    longer = upglow.Illuminant(light, ends="hold")
     # From 781 nm on it is not D65.
-    assert upglow.Illuminant(longer).name == f"{longer.name} (samples)"
+    assert longer.name == f"{light.name} (samples)"
     assert np.abs(cube.xyz(COLORS, light=longer) - cube.xyz(COLORS)).max() < COLOR
 
 

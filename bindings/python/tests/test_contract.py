@@ -67,7 +67,7 @@ def test_a_light_of_other_numbers_never_has_a_built_in_name(tmp_path) -> None:
         (lambda: upglow.Contract(space=[1, 2]), "space has 2 numbers, expected a name or eight"),
         (lambda: upglow.Contract(space=[0.3] * 8), "the three primaries lie on one line"),
         (lambda: upglow.Contract(adaptation="x"), 'unknown adaptation "x", expected bradford or'),
-        (lambda: upglow.Contract(illuminant="F11"), 'unknown illuminant "F11", expected D65, '),
+        (lambda: upglow.Contract(illuminant="F11"), 'unknown illuminant "F11", expected D50, '),
         (lambda: upglow.Illuminant(([380, 780], [1, 1])), "custom: sample 1: 780 nm after"),
         (
             lambda: upglow.Illuminant((upglow.FIT_NM[16:], np.ones(91))),
@@ -92,6 +92,41 @@ def test_another_type_than_a_spectrum_is_a_type_error() -> None:
         upglow.Illuminant(7)
     with pytest.raises(FileNotFoundError):
         upglow.Illuminant("no/such/light.csv")
+
+
+def test_a_light_that_ends_early_needs_ends(tmp_path) -> None:
+    nm = np.arange(380.0, 781.0, 5.0)
+    path = tmp_path / "lamp.csv"
+    rows = "\n".join(f"{each:g},2" for each in nm)
+    path.write_text(f"wavelength_nm,power\n{rows}\n")
+    hint = '; ends="zero" or "hold" says what is beyond'
+    for source, place in (((nm, 2 * np.ones(81)), "custom"), (path, str(path))):
+        with pytest.raises(ValueError) as found:
+            upglow.Illuminant(source)
+        told = "covers 380 to 780 nm, expected at least 300 to 830 nm"
+        assert str(found.value) == f"{place}: {told}{hint}"
+        zero, hold = (upglow.Illuminant(source, ends=ends) for ends in ("zero", "hold"))
+        assert (zero.given_nm, hold.given_nm) == ((380, 780), (300, 830))
+        assert zero.power.sum() == 2 * 401 and (hold.power == 2).all()
+    for source in ("D65", upglow.Illuminant("D65")):
+        with pytest.raises(ValueError, match="ends='zero' with D65, expected samples or a file"):
+            upglow.Illuminant(source, ends="zero")
+    with pytest.raises(ValueError, match='unknown ends "flat", expected zero or hold'):
+        upglow.Illuminant((nm, np.ones(81)), ends="flat")
+
+
+def test_a_light_without_ultraviolet_is_named_in_a_warning() -> None:
+    told = "FL11 is given from 380 nm on: what dyes absorb below is not counted"
+    with pytest.warns(UserWarning, match=told):
+        cube = upglow.build(upglow.Contract(illuminant="FL11"), resolution=2)
+    with pytest.warns(UserWarning, match=told):
+        cube.xyz([0.9, 0.0, 0.9])
+    with pytest.warns(UserWarning, match=told):
+        cube.radiance_factor([0.9, 0.0, 0.9])
+    # Neither the light nor the model has anything to say; pytest turns warnings into errors.
+    cube.xyz([0.9, 0.0, 0.9], light="ID65")
+    flat = upglow.build(model=upglow.Reflectance(), resolution=2)
+    flat.xyz([0.5, 0.5, 0.5], light="FL11")
 
 
 def test_a_broken_file_is_named(tmp_path) -> None:

@@ -91,7 +91,7 @@ NM = np.arange(380.0, 781.0, 5.0)
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: upglow.Observer("hawk"), 'unknown observer "hawk", expected cie-1931-2deg, or'),
+        (lambda: upglow.Observer("hawk"), 'unknown observer "hawk", expected cie-1931-2deg, cie-1964'),
         (lambda: upglow.Observer((NM, np.ones(81))), "observer: wavelengths of shape (81,) and"),
         (lambda: upglow.Observer((NM[9:], bells(NM[9:]))), "custom: covers 425 to 780 nm, expected"),
         (lambda: upglow.Observer((NM[::2], bells(NM[::2]))), "custom: sample 1: 390 nm after 380 nm"),

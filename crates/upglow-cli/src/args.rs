@@ -11,7 +11,7 @@ use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
 use upglow::{CoefficientTable, Interpolation};
-use upglow_color::{RgbSpace, choices};
+use upglow_color::{Ends, RgbSpace, choices};
 use upglow_shader::Language;
 use upglow_terminal::{Console, Threads, count, in_range, word};
 
@@ -71,6 +71,15 @@ pub(crate) enum Command {
     Reproduce(MovedArgs),
 }
 
+/// How lights are read from files.
+#[derive(Clone, Debug, clap::Args)]
+pub(crate) struct LightArgs {
+    /// Power of a light from a file beyond its samples, if they end within 300 to 830 nm: zero, or
+    /// hold for that of the nearest sample [default: such a file is refused]
+    #[arg(long = "light-ends", value_name = "NAME", value_parser = word::<Ends>())]
+    pub(crate) ends: Option<Ends>,
+}
+
 /// The arguments of a command that is now in another program.
 #[derive(Clone, Debug, clap::Args)]
 #[command(disable_help_flag = true)]
@@ -93,6 +102,8 @@ pub(crate) struct InspectArgs {
         help = format!("Light of a coefficient table: {} [default: D65]", lights())
     )]
     pub(crate) illuminant: Option<String>,
+    #[command(flatten)]
+    pub(crate) light: LightArgs,
 }
 
 #[derive(Clone, Debug, clap::Args)]
@@ -144,6 +155,8 @@ pub(crate) struct ColorArgs {
         )
     )]
     pub(crate) lights: Vec<String>,
+    #[command(flatten)]
+    pub(crate) light: LightArgs,
     /// Draw the curves of the material to this SVG file
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) plot: Option<PathBuf>,

@@ -2,12 +2,20 @@
 
 use std::fmt::{self, Display};
 
+use upglow_color::MissingUltraviolet;
 use upglow_fit::{CubeSummary, KindCounts, MaterialKind};
 use upglow_terminal::size;
 
 /// Prints a warning on standard error.
 pub(crate) fn warn(message: impl Display) {
     eprintln!("upglow: warning: {message}");
+}
+
+/// Prints each warning about ultraviolet that a light lacks, and returns it for the report.
+pub(crate) fn warn_of_ultraviolet(missing: Option<MissingUltraviolet>) -> Option<String> {
+    let text = missing?.to_string();
+    warn(&text);
+    Some(text)
 }
 
 /// Prints on standard error what is wrong with one picture of several.

@@ -1,6 +1,7 @@
 //! Checks the options and turns them into values of the libraries.
 
 use std::error::Error;
+use std::ffi::OsStr;
 use std::path::Path;
 
 use upglow::{
@@ -11,7 +12,9 @@ use upglow_color::{Choice, Contract, Illuminant, LinearRgb, Observer};
 use upglow_fit::{FitOptions, FitOptionsError, Fitter, GivenOptions, Preset};
 use upglow_terminal::Failure;
 
-use crate::args::{BuildArgs, ColorArgs, ContractArgs, FitArgs, ModelArgs, ModelName, SlopeLimits};
+use crate::args::{
+    BuildArgs, ColorArgs, ContractArgs, FitArgs, LightArgs, ModelArgs, ModelName, SlopeLimits,
+};
 use crate::files;
 
 /// A cube to build.
@@ -71,13 +74,15 @@ pub(crate) fn options_failure(error: FitOptionsError, options: &FitOptions) -> F
 fn contract(args: &ContractArgs) -> Result<Contract, Failure> {
     checked(Contract {
         space: args.space.clone(),
-        illuminant: light("--illuminant", &args.illuminant)?,
+        illuminant: light("--illuminant", &args.illuminant, &args.light)?,
         observer: named_or_read(
             "--observer",
             &args.observer,
             "x,y,z",
             Observer::named,
-            Observer::from_csv_file,
+            |path, text| {
+                Observer::from_csv_file(path, text).map_err(|error| Failure::file(path, error))
+            },
         )?,
         adaptation: args.adapt,
     })
@@ -90,8 +95,33 @@ pub(crate) fn checked(contract: Contract) -> Result<Contract, Failure> {
 }
 
 /// The light of a name or file, given with `option`.
-pub(crate) fn light(option: &str, text: &str) -> Result<Illuminant, Failure> {
-    named_or_read(option, text, "power", Illuminant::named, Illuminant::from_csv_file)
+pub(crate) fn light(option: &str, text: &str, args: &LightArgs) -> Result<Illuminant, Failure> {
+    let mut lights = lights(option, &[text], args)?;
+    Ok(lights.remove(0))
+}
+
+/// The lights of names or files, given with `option`.
+pub(crate) fn lights(
+    option: &str,
+    texts: &[impl AsRef<str>],
+    args: &LightArgs,
+) -> Result<Vec<Illuminant>, Failure> {
+    let is_built_in = |text: &str| Illuminant::named(text).is_ok();
+    if args.ends.is_some() && texts.iter().all(|text| is_built_in(text.as_ref())) {
+        let message =
+            format!("given without a light from a file, expected {option} with a CSV file");
+        return Err(Failure::option("--light-ends", message));
+    }
+    let read = |path: &Path, text: &str| {
+        Illuminant::from_csv_file(path, text, args.ends).map_err(|error| {
+            let has_choice = args.ends.is_none() && error.lacks_ends();
+            let hint = "; --light-ends zero or hold says what is beyond";
+            Failure::file(path, error).with(if has_choice { hint } else { "" })
+        })
+    };
+    let light =
+        |text: &_| named_or_read(option, AsRef::as_ref(text), "power", Illuminant::named, read);
+    texts.iter().map(light).collect()
 }
 
 /// The built-in value of this name, or that of the CSV file at this path, named after the file.
@@ -100,22 +130,24 @@ fn named_or_read<T, E: Error + Send + Sync + 'static>(
     text: &str,
     columns: &str,
     named: fn(&str) -> Result<T, E>,
-    from_csv_file: fn(&Path, &str) -> Result<T, E>,
+    from_csv_file: impl Fn(&Path, &str) -> Result<T, Failure>,
 ) -> Result<T, Failure> {
     let path = Path::new(text);
     match named(text) {
         Err(_) if is_path(path) => {
             let expected = format!("a CSV file with the header wavelength_nm,{columns}");
             let text = files::read_text(path, &expected)?;
-            from_csv_file(path, &text).map_err(|error| Failure::file(path, error))
+            from_csv_file(path, &text)
         }
         named => named.map_err(|error| Failure::option(option, error)),
     }
 }
 
-/// Whether a word that is no built-in name looks like a path.
+/// Whether a word that is no built-in name looks like a path. `FL3.16` and `500.5K` do not.
 fn is_path(path: &Path) -> bool {
-    path.exists() || path.components().count() > 1 || path.extension().is_some()
+    let has_letter_first = |suffix: &str| suffix.starts_with(char::is_alphabetic);
+    let suffix = path.extension().and_then(OsStr::to_str);
+    path.exists() || path.components().count() > 1 || suffix.is_some_and(has_letter_first)
 }
 
 /// Returns an error for an option that was given but would be ignored, because it does not apply to

@@ -131,6 +131,43 @@ fn invalid_lights() {
     assert!(line.starts_with("dark.csv: no power"), "{line}");
     let line = folder.refused(1, "build --illuminant absent.csv -o cube");
     assert!(line.starts_with("absent.csv: no such file"), "{line}");
+    for name in ["FL3.16", "500.5K", "d3000k"] {
+        let line = folder.refused(2, &format!("build --illuminant {name} -o cube"));
+        assert!(line.starts_with("--illuminant: ") && line.contains(", expected "), "{line}");
+    }
+}
+
+#[test]
+fn lights_that_end_early() {
+    let folder = folder_with_cube();
+    let rows = (380..=780).step_by(5).map(|nm| format!("{nm},1\n"));
+    folder.write("lamp.csv", format!("wavelength_nm,power\n{}", rows.collect::<String>()));
+    let commands = [
+        "build --resolution 2 -o other --illuminant lamp.csv",
+        "color cube 0.9 0 0.9 --light D65 --light lamp.csv",
+    ];
+    for command in commands {
+        assert_eq!(
+            folder.refused(1, command),
+            "lamp.csv: covers 380 to 780 nm, expected at least 300 to 830 nm; --light-ends zero or \
+             hold says what is beyond"
+        );
+        let said = |ends: &str| folder.run(&format!("{command} --light-ends {ends}")).stderr;
+        let missing = "lamp is given from 380 nm on: what dyes absorb below is not counted";
+        assert_eq!(said("zero"), format!("upglow: warning: {missing}\n"));
+        assert_eq!(said("hold"), "");
+        let command = command.replace("lamp.csv", "FL11");
+        let line = folder.refused(2, &format!("{command} --light-ends zero"));
+        assert!(line.starts_with("--light-ends: given without a light from a file"), "{line}");
+    }
+    let told = folder.run("--json color cube 0.9 0 0.9 --light FL11").stdout;
+    let told: serde_json::Value = serde_json::from_str(&told).unwrap();
+    let missing = |light: usize| told["lights"][light]["missing_ultraviolet"].as_str();
+    let fl11 = "FL11 is given from 380 nm on: what dyes absorb below is not counted";
+    assert_eq!([missing(0), missing(1)], [None, Some(fl11)]);
+    // Gray has no dye.
+    let gray = folder.run("color cube 0.5 0.5 0.5 --light FL11");
+    assert_eq!((gray.status, gray.stderr.as_str()), (0, ""));
 }
 
 #[test]
@@ -169,7 +206,7 @@ fn command_lines_that_do_not_fit() {
     let cases = [
         ("build --space rec7 -o x", "--space: unknown RGB space \"rec7\", expected acescg"),
         ("build --space 1,2,3 -o x", "--space: unknown RGB space"),
-        ("build --illuminant F11 -o x", "--illuminant: unknown illuminant \"F11\", expected D65"),
+        ("build --illuminant F11 -o x", "--illuminant: unknown illuminant \"F11\", expected D50"),
         ("build --observer hawk -o x", "--observer: unknown observer \"hawk\", expected cie-1931"),
         ("build --dyes none -o x", "--dyes: unknown dye set \"none\", expected konig8"),
         ("build --metric lab -o x", "--metric: unknown metric \"lab\", expected de2000"),

@@ -145,7 +145,7 @@ mod tests {
 
     #[test]
     fn every_built_in_light_makes_a_valid_contract() {
-        for name in Illuminant::NAMES {
+        for name in Illuminant::names() {
             let illuminant = Illuminant::named(name).unwrap();
             assert_eq!(Contract { illuminant, ..Contract::default() }.check(), Ok(()), "{name}");
         }
@@ -155,7 +155,7 @@ mod tests {
     fn the_observer_adapts_to_lights_of_rooms_and_not_to_ultraviolet_lamps() {
         let contract = Contract::default();
         let own = contract.on(Grid::FIT);
-        for name in Illuminant::NAMES {
+        for name in Illuminant::names() {
             let light = Illuminant::named(name).unwrap();
             let seen = contract.seen_under(&light, Grid::FIT);
             assert!(seen.is_adapted && seen.white.0[1] == seen.colorimetry.white().0[1], "{name}");

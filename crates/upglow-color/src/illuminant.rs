@@ -1,17 +1,19 @@
 //! Light sources.
 
+mod built_in;
+
+use std::fmt;
 use std::path::Path;
 
 use crate::grid::Grid;
 use crate::light_bands::LightBands;
 use crate::names::{NameError, name_after_file};
 use crate::observer::Observer;
-use crate::samples::{SampleRules, SamplesError, curves_from_samples, fine_means};
+use crate::samples::{Ends, SampleRules, SamplesError, curves_from_samples, fine_means};
 use crate::spectrum::{Spectrum, SpectrumCsvError, read_columns};
-use crate::tables::daylight::{DAYLIGHT_COMPONENTS, DAYLIGHT_FIRST_NM, DAYLIGHT_STEP_NM};
-use crate::tables::lamps::{LAMPS, LAMPS_FIRST_NM, LAMPS_LAST_NM, LAMPS_STEP_NM};
 
-/// A named light: relative spectral power on [`Grid::FINE`], 300 to 830 nm.
+/// A named light: relative spectral power on [`Grid::FINE`], 300 to 830 nm. Many lamps are published
+/// from 380 to 780 nm only: their power is zero beyond, see [`Illuminant::given_nm`].
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(transparent))]
 #[must_use]
@@ -19,6 +21,8 @@ pub struct Illuminant {
     name: String,
     #[cfg_attr(feature = "serde", serde(skip))]
     power: Spectrum,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    given_nm: [u32; 2],
 }
 
 /// Why a light is rejected.
@@ -26,10 +30,22 @@ pub struct Illuminant {
 #[non_exhaustive]
 pub enum IlluminantError {
     /// No built-in light has this name.
-    #[error("unknown illuminant {found:?}, expected {}, or a CSV file", Illuminant::NAMES.join(", "))]
+    #[error("unknown illuminant {found:?}, expected {}, or a CSV file", Illuminant::FAMILIES)]
     Unknown {
         /// The name given.
         found: String,
+    },
+    /// No such phase of daylight or blackbody is built in.
+    #[error("{name:?} is {kind} of {found_k} K, expected {} to {} K", range_k[0], range_k[1])]
+    Temperature {
+        /// The name given.
+        name: String,
+        /// "a blackbody" or "daylight".
+        kind: &'static str,
+        /// The temperature given, K.
+        found_k: f64,
+        /// Least and greatest temperature, K.
+        range_k: [f64; 2],
     },
     /// The CSV text is not a spectrum.
     #[error(transparent)]
@@ -55,18 +71,44 @@ pub enum IlluminantError {
     Invisible,
 }
 
-/// Today's second radiation constant (1.438776877e-2 m·K) over that of the temperature scale in which
-/// the nominal color temperatures of daylight were defined (1.4380e-2 m·K): they scale by the ratio.
-const C2_NOW_OVER_C2_THEN: f64 = 1.438_776_877 / 1.438_0;
+impl IlluminantError {
+    /// Whether samples end within 300 to 830 nm, so that [`Ends`] could say what is beyond.
+    pub fn lacks_ends(&self) -> bool {
+        let (Self::Samples(error) | Self::Csv(SpectrumCsvError::Samples(error))) = self else {
+            return false;
+        };
+        matches!(error, SamplesError::Range { .. })
+    }
+}
+
+/// A light whose power is not known at short wavelengths; as text, what that means.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MissingUltraviolet {
+    /// Name of the light.
+    pub light: String,
+    /// Where the power is known from, nm.
+    pub from_nm: u32,
+}
+
+impl MissingUltraviolet {
+    /// The wavelengths of [`Grid::FINE`] at which the power is not known, nm.
+    pub fn wavelengths_nm(&self) -> impl Iterator<Item = f64> + Clone + use<> {
+        (Grid::FINE.first_nm()..self.from_nm).map(f64::from)
+    }
+}
+
+impl fmt::Display for MissingUltraviolet {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { light, from_nm } = self;
+        write!(f, "{light} is given from {from_nm} nm on: what dyes absorb below is not counted")
+    }
+}
 
 /// Greatest difference of a power from that of the built-in light of the same name, relative to the
 /// greatest power. The standards print six digits, half a unit of the last of which is 4e-6 of the
 /// greatest power of D65: their tables are the built-in lights too. Larger would let the name
 /// cover lights of other colors.
 const NAME_TOLERANCE: f64 = 1e-5;
-
-/// The wavelength at which daylights and illuminant A have power 100, nm.
-const REFERENCE_NM: f64 = 560.0;
 
 /// The least full width at half maximum of a line, nm. Narrower ones would lose their power to the
 /// rounding of wavelengths.
@@ -77,43 +119,14 @@ const NARROWEST_NM: f64 = 1e-3;
 const SAMPLED_FROM_NM: f64 = 2.0;
 
 impl Illuminant {
-    /// The built-in lights.
-    pub const NAMES: [&str; 10] =
-        ["D65", "D60", "D55", "D50", "A", "E", "FL2", "FL11", "HP1", "LED-B3"];
-
-    /// The built-in light of this name, in any case.
-    ///
-    /// # Errors
-    ///
-    /// [`IlluminantError::Unknown`] lists the known names.
-    pub fn named(name: &str) -> Result<Self, IlluminantError> {
-        match name.to_ascii_uppercase().as_str() {
-            "D65" => Ok(Self::daylight("D65", 6500.0)),
-            "D60" => Ok(Self::daylight("D60", 6000.0)),
-            "D55" => Ok(Self::daylight("D55", 5500.0)),
-            "D50" => Ok(Self::daylight("D50", 5000.0)),
-            "A" => Ok(Self::a()),
-            "E" => Ok(Self::from_fn("E", |_| 100.0)),
-            _ => Self::lamp(name).ok_or_else(|| IlluminantError::Unknown { found: name.into() }),
-        }
-    }
-
-    /// A lamp of the tables, whose power is zero below 380 and above 780 nm.
-    fn lamp(name: &str) -> Option<Self> {
-        let (name, power) = LAMPS.iter().find(|(known, _)| known.eq_ignore_ascii_case(name))?;
-        let grid = Grid::try_new(LAMPS_FIRST_NM, LAMPS_LAST_NM, LAMPS_STEP_NM)
-            .expect("the table is on a grid");
-        let power = Spectrum::new(grid, power.to_vec()).expect("the table fills the grid");
-        Some(Self { name: (*name).into(), power: power.resampled(Grid::FINE) })
-    }
-
-    /// The light in CSV text with the header `wavelength_nm,power`, 300 to 830 nm.
+    /// The light in CSV text with the header `wavelength_nm,power`: 300 to 830 nm, or with `ends` at
+    /// least 400 to 700 nm.
     ///
     /// # Errors
     ///
     /// [`IlluminantError`] if the text does not define a spectrum, or one without visible power.
-    pub fn from_csv(name: &str, text: &str) -> Result<Self, IlluminantError> {
-        let [power] = read_columns(text, ["power"], SampleRules::LIGHT)?;
+    pub fn from_csv(name: &str, text: &str, ends: Option<Ends>) -> Result<Self, IlluminantError> {
+        let [power] = read_columns(text, ["power"], SampleRules::LIGHT.ending(ends))?;
         Self::from_spectrum(name, &power)
     }
 
@@ -123,18 +136,23 @@ impl Illuminant {
     /// # Errors
     ///
     /// As [`Illuminant::from_csv`].
-    pub fn from_csv_file(path: &Path, text: &str) -> Result<Self, IlluminantError> {
+    pub fn from_csv_file(
+        path: &Path,
+        text: &str,
+        ends: Option<Ends>,
+    ) -> Result<Self, IlluminantError> {
         let is_taken = |name: &str| {
             matches!(
-                Self::from_csv(name, text),
+                Self::from_csv(name, text, ends),
                 Err(IlluminantError::Name(NameError::Taken { .. }))
             )
         };
-        Self::from_csv(&name_after_file(path, is_taken), text)
+        Self::from_csv(&name_after_file(path, is_taken), text, ends)
     }
 
-    /// A light from samples of its relative power: ascending wavelengths (nm) from 300 to 830 nm in
-    /// steps of at most 10 nm, and a power of 0 or more for each.
+    /// A light from samples of its relative power: ascending wavelengths (nm) from 300 to 830 nm, or
+    /// with `ends` at least from 400 to 700 nm, in steps of at most 10 nm, and a power of 0 or more for
+    /// each.
     ///
     /// # Errors
     ///
@@ -143,21 +161,24 @@ impl Illuminant {
         name: &str,
         wavelengths_nm: &[f64],
         power: &[f64],
+        ends: Option<Ends>,
     ) -> Result<Self, IlluminantError> {
         let columns = [("power", power)];
-        let [power] = curves_from_samples(wavelengths_nm, columns, SampleRules::LIGHT)?;
+        let rules = SampleRules::LIGHT.ending(ends);
+        let [power] = curves_from_samples(wavelengths_nm, columns, rules)?;
         Self::from_spectrum(name, &power)
     }
 
-    /// A light from its relative power.
+    /// A light from its relative power, which is zero beyond its grid.
     ///
     /// # Errors
     ///
     /// [`IlluminantError`] if a power is negative, if all are zero from 360 to 830 nm, or if the name
     /// is that of a built-in light with other numbers.
     pub fn from_spectrum(name: &str, power: &Spectrum) -> Result<Self, IlluminantError> {
-        let power = power.resampled(Grid::FINE);
-        SampleRules::LIGHT.check_curve("power", &power)?;
+        let mut light = Self::of(name, power);
+        let power = &light.power;
+        SampleRules::LIGHT.check_curve("power", power)?;
         let first_visible = 60;
         if power.values()[first_visible..].iter().all(|&p| p <= 0.0) {
             return Err(IlluminantError::Invisible);
@@ -168,12 +189,42 @@ impl Illuminant {
                 "illuminant",
                 name,
                 "power",
-                &power,
+                power,
                 &known.power,
                 NAME_TOLERANCE,
             )?;
+            light.given_nm = known.given_nm;
         }
-        Ok(Self { name: name.into(), power })
+        Ok(light)
+    }
+
+    /// A light whose power is valid, and whose name is its own.
+    fn of(name: &str, power: &Spectrum) -> Self {
+        let (given, fine) = (power.grid(), Grid::FINE);
+        let first_nm = given.first_nm().clamp(fine.first_nm(), fine.last_nm());
+        let last_nm = given.last_nm().clamp(fine.first_nm(), fine.last_nm());
+        Self { name: name.into(), power: power.resampled(fine), given_nm: [first_nm, last_nm] }
+    }
+
+    /// This light behind a filter that takes all power below `nm`, and only that.
+    ///
+    /// # Errors
+    ///
+    /// [`IlluminantError`] if no power is left between 360 and 830 nm, or if the name is that of a
+    /// built-in light with other numbers.
+    pub fn cut_below(&self, name: &str, nm: f64) -> Result<Self, IlluminantError> {
+        let light = self.filtered(name, nm);
+        Self::from_spectrum(name, &light.power).map(|_| light)
+    }
+
+    /// The same for a name that is free.
+    fn filtered(&self, name: &str, from_nm: f64) -> Self {
+        let light = Self::from_fn(name, |nm| if nm < from_nm { 0.0 } else { self.power.at(nm) });
+        // Behind the filter the power is known.
+        let [first_nm, last_nm] = self.given_nm;
+        let is_known = from_nm > f64::from(first_nm);
+        let first_nm = if is_known { Grid::FINE.first_nm() } else { first_nm };
+        Self { given_nm: [first_nm, last_nm], ..light }
     }
 
     /// A lamp with one Gaussian line, like an ultraviolet LED: peak and full width at half maximum in
@@ -208,41 +259,10 @@ impl Illuminant {
         Self::from_spectrum(name, &fine_means(samples))
     }
 
-    /// A phase of daylight of the given nominal correlated color temperature.
-    ///
-    /// # Source
-    ///
-    /// `cie015`, section 4.1.2; M1 and M2 rounded to three decimals as CIE does for its tables.
-    fn daylight(name: &str, nominal_cct_k: f64) -> Self {
-        let t = nominal_cct_k * C2_NOW_OVER_C2_THEN;
-        let [x, y] = daylight_chromaticity(t);
-        let m = 0.0241 + 0.2562 * x - 0.7341 * y;
-        let to_three_decimals = |v: f64| (v * 1000.0).round() / 1000.0;
-        let m1 = to_three_decimals((-1.3515 - 1.7703 * x + 5.9114 * y) / m);
-        let m2 = to_three_decimals((0.0300 - 31.4424 * x + 30.0717 * y) / m);
-        let grid = Grid::try_new(DAYLIGHT_FIRST_NM, Grid::FINE.last_nm(), DAYLIGHT_STEP_NM)
-            .expect("the table is on a grid");
-        let values =
-            DAYLIGHT_COMPONENTS.iter().map(|[s0, s1, s2]| s0 + m1 * s1 + m2 * s2).collect();
-        let power = Spectrum::new(grid, values).expect("the table fills the grid");
-        let scale = 100.0 / power.at(REFERENCE_NM);
-        Self { name: name.into(), power: power.resampled(Grid::FINE).scaled(scale) }
-    }
-
-    /// CIE standard illuminant A, incandescent light.
-    ///
-    /// # Source
-    ///
-    /// `cie015`, section 4.1.1, equation 1: 2848 K with the second constant 1.435e7 nm·K.
-    fn a() -> Self {
-        let planck = |nm: f64| nm.powi(-5) / ((1.435e7 / (2848.0 * nm)).exp() - 1.0);
-        Self::from_fn("A", |nm| 100.0 * planck(nm) / planck(REFERENCE_NM))
-    }
-
     fn from_fn(name: &str, power: impl Fn(f64) -> f64) -> Self {
         let values = Grid::FINE.wavelengths_nm().map(power).collect();
         let power = Spectrum::new(Grid::FINE, values).expect("the formula is finite everywhere");
-        Self { name: name.into(), power }
+        Self::of(name, &power)
     }
 
     /// The name that files state.
@@ -253,6 +273,19 @@ impl Illuminant {
     /// Relative spectral power on [`Grid::FINE`].
     pub fn power(&self) -> &Spectrum {
         &self.power
+    }
+
+    /// First and last wavelength at which the power is known, nm; it is zero beyond.
+    pub fn given_nm(&self) -> [u32; 2] {
+        self.given_nm
+    }
+
+    /// What is to say about a light whose power is not known from 300 nm on, where materials absorb
+    /// ultraviolet.
+    pub fn missing_ultraviolet(&self) -> Option<MissingUltraviolet> {
+        let [from_nm, _] = self.given_nm;
+        (from_nm > Grid::FINE.first_nm())
+            .then(|| MissingUltraviolet { light: self.name.clone(), from_nm })
     }
 
     /// Relative power in the band around each wavelength of a grid, in units of [`Illuminant::power`]:
@@ -266,22 +299,8 @@ impl Illuminant {
 impl Default for Illuminant {
     /// CIE standard illuminant D65.
     fn default() -> Self {
-        Self::daylight("D65", 6500.0)
+        Self::d65()
     }
-}
-
-/// Chromaticity of daylight of correlated color temperature `t`, K; 4000 to 25000 K.
-///
-/// # Source
-///
-/// `cie015`, section 4.1.2, equations 6 to 8.
-fn daylight_chromaticity(t: f64) -> [f64; 2] {
-    let x = if t <= 7000.0 {
-        0.244_063 + 0.099_11e3 / t + 2.967_8e6 / t.powi(2) - 4.607_0e9 / t.powi(3)
-    } else {
-        0.237_040 + 0.247_48e3 / t + 1.901_8e6 / t.powi(2) - 2.006_4e9 / t.powi(3)
-    };
-    [x, -3.000 * x * x + 2.870 * x - 0.275]
 }
 
 #[cfg(test)]
@@ -335,8 +354,7 @@ mod tests {
         assert_eq!(Illuminant::named("led-b3").unwrap().name(), "LED-B3");
         assert_eq!(
             Illuminant::named("F11").unwrap_err().to_string(),
-            "unknown illuminant \"F11\", expected D65, D60, D55, D50, A, E, FL2, FL11, HP1, LED-B3, or a \
-             CSV file"
+            format!("unknown illuminant \"F11\", expected {}, or a CSV file", Illuminant::FAMILIES)
         );
     }
 
@@ -344,14 +362,14 @@ mod tests {
     fn samples_and_csv_text_give_the_same_light() {
         let d50 = Illuminant::named("D50").unwrap();
         let nm: Vec<f64> = Grid::FINE.wavelengths_nm().collect();
-        let sampled = Illuminant::from_samples("lamp", &nm, d50.power().values()).unwrap();
+        let sampled = Illuminant::from_samples("lamp", &nm, d50.power().values(), None).unwrap();
         let rows = nm.iter().zip(d50.power().values()).map(|(nm, p)| format!("{nm},{p}\n"));
         let text = "wavelength_nm,power\n".to_owned() + &rows.collect::<String>();
-        assert_eq!(sampled, Illuminant::from_csv("lamp", &text).unwrap());
+        assert_eq!(sampled, Illuminant::from_csv("lamp", &text, None).unwrap());
         assert_eq!(sampled.power(), d50.power());
         let negative = vec![-1.0; nm.len()];
         assert_eq!(
-            Illuminant::from_samples("lamp", &nm, &negative).unwrap_err().to_string(),
+            Illuminant::from_samples("lamp", &nm, &negative, None).unwrap_err().to_string(),
             "sample 0: -1 in column \"power\", expected a value of 0 or more"
         );
     }
@@ -359,7 +377,7 @@ mod tests {
     #[test]
     fn a_built_in_name_is_for_the_built_in_light_only() {
         let flat = Spectrum::new(Grid::FINE, vec![1.0; Grid::FINE.len()]).unwrap();
-        for name in Illuminant::NAMES {
+        for name in Illuminant::names() {
             let known = Illuminant::named(name).unwrap();
             for spelling in [name.to_owned(), name.to_lowercase()] {
                 let same = Illuminant::from_spectrum(&spelling, known.power()).unwrap();
@@ -390,14 +408,17 @@ mod tests {
             "wavelength_nm,power\n".to_owned() + &rows.collect::<String>()
         };
         let named = |path: &str, light: &Illuminant| {
-            Illuminant::from_csv_file(Path::new(path), &text(light)).unwrap().name().to_owned()
+            Illuminant::from_csv_file(Path::new(path), &text(light), None)
+                .unwrap()
+                .name()
+                .to_owned()
         };
         let [a, e] = ["A", "E"].map(|name| Illuminant::named(name).unwrap());
         assert_eq!(named("lamps/A.csv", &e), "A.csv");
         assert_eq!(named("lamps/a.csv", &e), "a.csv");
         assert_eq!(named("lamps/A.csv", &a), "A");
         assert_eq!(named("lamps/f11.csv", &e), "f11");
-        assert!(Illuminant::from_csv_file(Path::new("lamps/A"), &text(&e)).is_err());
+        assert!(Illuminant::from_csv_file(Path::new("lamps/A"), &text(&e), None).is_err());
     }
 
     #[test]
@@ -410,6 +431,49 @@ mod tests {
             let line = Illuminant::line("x", peak_nm, fwhm_nm);
             assert!(matches!(line, Err(IlluminantError::Line { .. })));
         }
+    }
+
+    #[test]
+    fn a_light_that_ends_early_needs_to_say_what_is_beyond() {
+        let nm: Vec<f64> = (0..=80).map(|i| 380.0 + 5.0 * f64::from(i)).collect();
+        let power: Vec<f64> = nm.iter().map(|nm| nm - 370.0).collect();
+        let light = |ends| Illuminant::from_samples("lamp", &nm, &power, ends);
+        let refused = light(None).unwrap_err();
+        assert!(refused.lacks_ends());
+        let line = "covers 380 to 780 nm, expected at least 300 to 830 nm";
+        assert_eq!(refused.to_string(), line);
+        let [zero, hold] = [Ends::Zero, Ends::Hold].map(|ends| light(Some(ends)).unwrap());
+        assert_eq!((zero.given_nm(), hold.given_nm()), ([380, 780], [300, 830]));
+        let ends =
+            |light: &Illuminant| [300.0, 379.0, 380.0, 780.0, 781.0].map(|nm| light.power.at(nm));
+        assert_eq!(ends(&zero), [0.0, 0.0, 10.0, 410.0, 0.0]);
+        assert_eq!(ends(&hold), [10.0, 10.0, 10.0, 410.0, 410.0]);
+        let short = Illuminant::from_samples("lamp", &nm[5..], &power[5..], Some(Ends::Hold));
+        let line = "covers 405 to 780 nm, expected at least 400 to 700 nm";
+        assert_eq!(short.unwrap_err().to_string(), line);
+    }
+
+    #[test]
+    fn a_light_between_whole_wavelengths_keeps_its_power_at_its_ends() {
+        // Rounding only.
+        const ROUNDING: f64 = 1e-9;
+        let nm: Vec<f64> = (0..=400).map(|i| 380.5 + f64::from(i)).collect();
+        let power = vec![2.0; nm.len()];
+        for (ends, area) in [(Ends::Zero, 800.0), (Ends::Hold, 2.0 * 531.0)] {
+            let light = Illuminant::from_samples("lamp", &nm, &power, Some(ends)).unwrap();
+            assert!((light.power.values().iter().sum::<f64>() - area).abs() < ROUNDING, "{ends}");
+        }
+    }
+
+    #[test]
+    fn a_published_lamp_is_the_built_in_one() {
+        let fl4 = Illuminant::named("FL4").unwrap();
+        let [first_nm, last_nm] = fl4.given_nm();
+        let nm: Vec<f64> = (first_nm..=last_nm).step_by(5).map(f64::from).collect();
+        let power: Vec<f64> = nm.iter().map(|nm| fl4.power.at(*nm)).collect();
+        let light = |ends| Illuminant::from_samples("FL4", &nm, &power, Some(ends));
+        assert_eq!(light(Ends::Zero).unwrap().given_nm(), fl4.given_nm());
+        assert!(matches!(light(Ends::Hold), Err(IlluminantError::Name(NameError::Taken { .. }))));
     }
 
     #[test]

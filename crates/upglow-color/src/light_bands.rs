@@ -236,11 +236,7 @@ mod tests {
             assert_eq!(bands(&light, grid).summation, Summation::Sampled, "{name} {grid:?}");
         }
         // Daylight behind a filter, which ends at a wavelength of the grids.
-        let d65 = Illuminant::default();
-        let nm = Grid::FINE.wavelengths_nm();
-        let cut = nm.zip(d65.power().values()).map(|(nm, p)| if nm < 400.0 { 0.0 } else { *p });
-        let cut = crate::Spectrum::new(Grid::FINE, cut.collect()).unwrap();
-        let light = Illuminant::from_spectrum("cut", &cut).unwrap();
+        let light = Illuminant::default().cut_below("cut", 400.0).unwrap();
         assert_eq!(bands(&light, grids[2]).summation, Summation::Sampled);
     }
 

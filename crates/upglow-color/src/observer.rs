@@ -7,7 +7,7 @@ use crate::matrix::Matrix3;
 use crate::names::{NameError, name_after_file};
 use crate::samples::{SampleRules, SamplesError, curves_from_samples};
 use crate::spectrum::{Spectrum, SpectrumCsvError, read_columns};
-use crate::tables::observer::{CIE_1931_2DEG, CIE_1931_2DEG_FIRST_NM};
+use crate::tables::observers::{OBSERVERS, ObserverTable};
 
 /// A set of color-matching functions x̄, ȳ, z̄: 0 or more, zero below 360 nm and where they were not
 /// measured, and linearly independent.
@@ -56,8 +56,21 @@ const COLUMNS: [&str; 3] = ["x", "y", "z"];
 const LEAST_VOLUME: f64 = 1e-3;
 
 impl Observer {
-    /// The built-in observers.
-    pub const NAMES: [&str; 1] = ["cie-1931-2deg"];
+    /// The built-in observers: the CIE's standard observers of 1931 and 1964, and those of 2015, which
+    /// follow from cone fundamentals.
+    ///
+    /// # Source
+    ///
+    /// `iso11664_1` and `cie170_2`.
+    pub const NAMES: [&str; OBSERVERS.len()] = {
+        let mut names = [""; OBSERVERS.len()];
+        let mut i = 0;
+        while i < names.len() {
+            names[i] = OBSERVERS[i].word;
+            i += 1;
+        }
+        names
+    };
 
     /// The built-in observer of this name, in any case; [`Observer::name`] is accepted too.
     ///
@@ -65,25 +78,31 @@ impl Observer {
     ///
     /// [`ObserverError::Unknown`] lists the known names.
     pub fn named(name: &str) -> Result<Self, ObserverError> {
-        let known = Self::cie_1931_2deg();
-        let is_known = |spelling: &str| name.eq_ignore_ascii_case(spelling);
-        if is_known(Self::NAMES[0]) || is_known(known.name()) {
-            return Ok(known);
-        }
-        Err(ObserverError::Unknown { found: name.into() })
+        let is_known = |table: &&ObserverTable| {
+            [table.word, table.name].iter().any(|spelling| name.eq_ignore_ascii_case(spelling))
+        };
+        OBSERVERS
+            .iter()
+            .find(is_known)
+            .map(Self::built_in)
+            .ok_or_else(|| ObserverError::Unknown { found: name.into() })
     }
 
     /// The CIE 1931 2° standard observer: measured from 360 to 830 nm, zero below.
     pub fn cie_1931_2deg() -> Self {
-        let lead = (CIE_1931_2DEG_FIRST_NM - Grid::FINE.first_nm()) as usize;
+        Self::built_in(&OBSERVERS[0])
+    }
+
+    fn built_in(table: &ObserverTable) -> Self {
+        let lead = (table.first_nm - Grid::FINE.first_nm()) as usize;
         let matching = [0, 1, 2].map(|channel| {
             let mut values = vec![0.0; Grid::FINE.len()];
-            for (value, row) in values[lead..].iter_mut().zip(&CIE_1931_2DEG) {
+            for (value, row) in values[lead..].iter_mut().zip(table.rows) {
                 *value = row[channel];
             }
             Spectrum::new(Grid::FINE, values).expect("the table is finite and fills the grid")
         });
-        Self { name: "CIE 1931 2°".into(), matching }
+        Self { name: table.name.into(), matching }
     }
 
     /// The observer in CSV text with the header `wavelength_nm,x,y,z`: at least 400 to 700 nm in steps
@@ -248,7 +267,8 @@ mod tests {
         }
         assert_eq!(
             Observer::named("hawk").unwrap_err().to_string(),
-            "unknown observer \"hawk\", expected cie-1931-2deg, or a CSV file"
+            "unknown observer \"hawk\", expected cie-1931-2deg, cie-1964-10deg, cie-2015-2deg, \
+             cie-2015-10deg, or a CSV file"
         );
     }
 

@@ -1,5 +1,6 @@
 //! Measured samples: the rules they must follow, and the curves through them.
 
+use crate::choices;
 use crate::grid::Grid;
 use crate::rounding::whole;
 use crate::spectrum::Spectrum;
@@ -12,8 +13,10 @@ pub struct SampleRules {
     /// Widest step between neighbors, nm. Larger accepts samples that a peak can hide between;
     /// smaller refuses the steps in which such curves are published.
     gap_limit_nm: f64,
-    /// The range that the samples must cover, nm; beyond them curves are zero.
+    /// The range that the samples must cover, nm.
     covered_nm: [f64; 2],
+    /// What curves are beyond the samples, if these may end within the range of the tables.
+    ends: Option<Ends>,
     /// Below this wavelength, nm, every sample must be zero.
     dark_below_nm: f64,
     /// Whether samples may be absent at either end of a curve, where they count as zero.
@@ -24,6 +27,17 @@ pub struct SampleRules {
     range_hint: &'static str,
 }
 
+/// What a measured curve is beyond its samples.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ends {
+    /// Zero.
+    Zero,
+    /// The same as at the nearest sample.
+    Hold,
+}
+
+choices!(Ends, "ends", Zero = "zero", Hold = "hold");
+
 /// Range of the greatest sample of a relative curve: a light, a color-matching function, an emission.
 /// Beyond it, sums of products leave the range of single or double precision.
 pub(crate) const RELATIVE_PEAKS: [f64; 2] = [1e-30, 1e30];
@@ -31,12 +45,17 @@ pub(crate) const RELATIVE_PEAKS: [f64; 2] = [1e-30, 1e30];
 /// First and last wavelength of the tables, nm.
 const TABLES_NM: [f64; 2] = [300.0, 830.0];
 
+/// What samples must cover, nm, where ends say what is beyond: a shorter observer would leave out more
+/// than a hundredth of its peak, a shorter light visible power.
+const VISIBLE_NM: [f64; 2] = [400.0, 700.0];
+
 impl SampleRules {
     /// Lights: 300 to 830 nm in steps of at most 10 nm, which is how lamps are published. Lines keep
     /// their power, however finely they are sampled.
     pub const LIGHT: Self = Self {
         gap_limit_nm: 10.0,
         covered_nm: TABLES_NM,
+        ends: None,
         dark_below_nm: 0.0,
         has_blank_ends: false,
         keeps_areas: true,
@@ -54,16 +73,25 @@ impl SampleRules {
     };
 
     /// Color-matching functions: steps of at most 5 nm, and zero beyond the samples. Published tables
-    /// begin at 360 to 400 nm and end at 700 to 830 nm. A shorter table would leave out more than a
-    /// hundredth of the peak; below 360 nm there are no measurements.
+    /// begin at 360 to 400 nm and end at 700 to 830 nm; below 360 nm there are no measurements.
     pub const OBSERVER: Self = Self {
         gap_limit_nm: 5.0,
-        covered_nm: [400.0, 700.0],
+        covered_nm: VISIBLE_NM,
+        ends: Some(Ends::Zero),
         dark_below_nm: 360.0,
         has_blank_ends: true,
         keeps_areas: false,
         range_hint: "",
     };
+
+    /// The same rules for samples that may end at 400 to 700 nm, if `ends` says what is beyond.
+    #[must_use]
+    pub fn ending(self, ends: Option<Ends>) -> Self {
+        match ends {
+            Some(_) => Self { covered_nm: VISIBLE_NM, ends, ..self },
+            None => self,
+        }
+    }
 
     /// Checks one sample of a column, at `nm`; `place` says where it is.
     pub(crate) fn check(
@@ -184,7 +212,8 @@ impl SamplesError {
     }
 }
 
-/// The curves through samples, on [`Grid::FINE`]. Each column has a name and one sample for each
+/// The curves through samples, on [`Grid::FINE`], or on the part of it that the samples cover if the
+/// curves are zero beyond. Each column has a name and one sample for each
 /// wavelength (nm); where the rules allow blank ends, NaN is an absent sample.
 ///
 /// # Errors
@@ -264,15 +293,55 @@ impl<'n, const N: usize> Rows<'n, N> {
         Ok(std::array::from_fn(|k| self.on_fine(k)))
     }
 
-    /// Column `k` on [`Grid::FINE`].
+    /// Column `k` at the wavelengths of [`Grid::FINE`], without ends where it is zero.
     fn on_fine(&self, k: usize) -> Spectrum {
         let [first_nm, last_nm] = TABLES_NM;
         let is_between = |nm: f64| first_nm < nm && nm < last_nm && nm.fract() != 0.0;
         // Otherwise the samples of the grid define the same lines.
-        if self.rules.keeps_areas && self.rows.iter().any(|row| is_between(row.nm)) {
-            return fine_means(self.rows.iter().map(|row| (row.nm, row.cells[k].unwrap_or(0.0))));
-        }
-        self.sample_fine(k)
+        let curve = if self.rules.keeps_areas && self.rows.iter().any(|row| is_between(row.nm)) {
+            self.means(k)
+        } else {
+            self.sample_fine(k)
+        };
+        if self.rules.ends == Some(Ends::Zero) { curve.resampled(self.covered()) } else { curve }
+    }
+
+    /// The wavelengths of [`Grid::FINE`] that the samples cover, and those around their ends.
+    fn covered(&self) -> Grid {
+        let [low_nm, high_nm] = TABLES_NM;
+        let [first_nm, last_nm] = self.range_nm();
+        let [first_nm, last_nm] = [first_nm.floor(), last_nm.ceil()].map(|nm| {
+            u32::try_from(whole(nm.clamp(low_nm, high_nm))).expect("wavelengths are small")
+        });
+        Grid::try_new(first_nm, last_nm, 1).expect("the samples cover a range")
+    }
+
+    /// First and last wavelength of the samples, nm.
+    fn range_nm(&self) -> [f64; 2] {
+        [self.rows[0].nm, self.rows[self.rows.len() - 1].nm]
+    }
+
+    /// Column `k` at the first and last sample, and what it is beyond.
+    fn ends(&self, k: usize) -> [[f64; 2]; 2] {
+        let [first, last] = [&self.rows[0], &self.rows[self.rows.len() - 1]];
+        [first, last].map(|row| {
+            let value = row.cells[k].unwrap_or(0.0);
+            [value, if self.rules.ends == Some(Ends::Hold) { value } else { 0.0 }]
+        })
+    }
+
+    /// Column `k` as the means around the wavelengths of [`Grid::FINE`].
+    fn means(&self, k: usize) -> Spectrum {
+        let [first_nm, last_nm] = self.range_nm();
+        let [[_, before], [_, after]] = self.ends(k);
+        let [low_nm, high_nm] = [TABLES_NM[0] - 1.0, TABLES_NM[1] + 1.0];
+        // Two samples at one wavelength are a step.
+        let start = [(low_nm, before), (first_nm, before)];
+        let start = start.into_iter().filter(|_| first_nm > TABLES_NM[0]);
+        let end = [(last_nm, after), (high_nm, after)];
+        let end = end.into_iter().filter(|_| last_nm < TABLES_NM[1]);
+        let samples = self.rows.iter().map(|row| (row.nm, row.cells[k].unwrap_or(0.0)));
+        fine_means(start.chain(samples).chain(end))
     }
 
     fn check_range(&self) -> Result<(), SamplesError> {
@@ -301,14 +370,18 @@ impl<'n, const N: usize> Rows<'n, N> {
         }
     }
 
-    /// Column `k` at every wavelength of [`Grid::FINE`]; zero beyond the rows.
+    /// Column `k` at every wavelength of [`Grid::FINE`].
     fn sample_fine(&self, k: usize) -> Spectrum {
         let rows = &self.rows;
-        let (first_nm, last_nm) = (rows[0].nm, rows[rows.len() - 1].nm);
+        let [first_nm, last_nm] = self.range_nm();
+        let [[_, before], [_, after]] = self.ends(k);
         let mut above = 1;
         let values = Grid::FINE.wavelengths_nm().map(|nm| {
-            if nm < first_nm.max(self.rules.dark_below_nm) || nm > last_nm {
-                return 0.0;
+            match nm {
+                _ if nm < self.rules.dark_below_nm => return 0.0,
+                _ if nm < first_nm => return before,
+                _ if nm > last_nm => return after,
+                _ => {}
             }
             while above + 1 < rows.len() && rows[above].nm < nm {
                 above += 1;

@@ -1,8 +1,6 @@
 //! The lights that materials are shown under.
 
-use upglow_color::{
-    Adaptation, Contract, Grid, Illuminant, Matrix3, RgbSpace, SeenUnder, Spectrum,
-};
+use upglow_color::{Adaptation, Contract, Grid, Illuminant, Matrix3, RgbSpace, SeenUnder};
 
 /// The peak and the width of an ultraviolet lamp for minerals and banknotes, nm.
 const LAMP_NM: [f64; 2] = [365.0, 12.0];
@@ -10,10 +8,14 @@ const LAMP_NM: [f64; 2] = [365.0, 12.0];
 /// Ultraviolet light ends here, nm: what the page scales, and what a filter takes away.
 pub(crate) const ULTRAVIOLET_BELOW_NM: f64 = 400.0;
 
-/// The contract's light, the built-in ones, daylight behind a filter, and an ultraviolet lamp.
+/// Daylights, incandescent light, equal energy, and one or two lamps of each kind. All built-in lights
+/// would make the page too long.
+const SHOWN: [&str; 10] = ["D65", "D60", "D55", "D50", "A", "E", "FL2", "FL11", "HP1", "LED-B3"];
+
+/// The contract's light, those shown always, daylight behind a filter, and an ultraviolet lamp.
 pub(crate) fn lights(contract: &Contract) -> Vec<Illuminant> {
     let own = &contract.illuminant;
-    let built_in = Illuminant::NAMES.iter().filter_map(|name| Illuminant::named(name).ok());
+    let built_in = SHOWN.iter().filter_map(|name| Illuminant::named(name).ok());
     let others = built_in.chain(filtered_daylight()).chain(lamp());
     std::iter::once(own.clone()).chain(others.filter(|light| light.name() != own.name())).collect()
 }
@@ -26,11 +28,7 @@ fn lamp() -> Option<Illuminant> {
 /// D65 without ultraviolet.
 fn filtered_daylight() -> Option<Illuminant> {
     let daylight = Illuminant::default();
-    let is_kept = |nm: f64| if nm < ULTRAVIOLET_BELOW_NM { 0.0 } else { 1.0 };
-    let samples = Grid::FINE.wavelengths_nm().zip(daylight.power().values());
-    let power = samples.map(|(nm, power)| is_kept(nm) * power).collect();
-    let power = Spectrum::new(Grid::FINE, power).ok()?;
-    Illuminant::from_spectrum(&format!("{} without UV", daylight.name()), &power).ok()
+    daylight.cut_below(&format!("{} without UV", daylight.name()), ULTRAVIOLET_BELOW_NM).ok()
 }
 
 /// A light, with all that the page needs to show materials under it.

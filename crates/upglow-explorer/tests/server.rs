@@ -72,7 +72,7 @@ fn planner() -> Planner {
         }
         if let Some(light) = text("--illuminant") {
             contract.illuminant = match std::fs::read_to_string(light) {
-                Ok(csv) => Illuminant::from_csv_file(Path::new(light), &csv),
+                Ok(csv) => Illuminant::from_csv_file(Path::new(light), &csv, None),
                 Err(_) => Illuminant::named(light),
             }
             .map_err(|error| error.to_string())?;

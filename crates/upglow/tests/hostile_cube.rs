@@ -677,7 +677,7 @@ fn the_shared_hostile_files_are_refused() {
     }
     let path = folder.join("light_denormal.csv");
     let text = std::fs::read_to_string(&path).unwrap();
-    let line = Illuminant::from_csv_file(&path, &text).unwrap_err().to_string();
+    let line = Illuminant::from_csv_file(&path, &text, None).unwrap_err().to_string();
     let expected = "the greatest value in column \"power\" is 5e-324, expected 1e-30 to 1e30";
     assert_eq!(line, expected);
 }

@@ -56,7 +56,7 @@ impl Lamp {
     /// The light with samples at these wavelengths, on the contract's other defaults.
     fn contract(&self, nm: &[f64]) -> Contract {
         let power: Vec<f64> = nm.iter().map(|&nm| self.power(nm)).collect();
-        let illuminant = Illuminant::from_samples("lamp", nm, &power).unwrap();
+        let illuminant = Illuminant::from_samples("lamp", nm, &power, None).unwrap();
         Contract { illuminant, ..Contract::default() }
     }
 }

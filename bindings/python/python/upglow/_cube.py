@@ -165,6 +165,8 @@ def build(
     slope_max, slope_under_dyes = map(_limit, (slope_max_per_nm, slope_under_dyes_per_nm))
     options = (preset, metric, slope_max, slope_under_dyes, relaxed, method, sweeps)
     agreed = (contract or Contract())._native
+    if missing := native.missing_ultraviolet(agreed.illuminant):
+        warnings.warn(missing, stacklevel=2)
     with reporting(progress) as report:
         return Cube._of(_upglow.build(agreed, native, resolution, options, threads, report))
 
@@ -374,6 +376,8 @@ class Cube:
         key = (illuminant, scale, step_nm)
         if key not in self._colors:
             native = None if illuminant is None else illuminant._native
+            if missing := self._native.missing_ultraviolet(native):
+                warnings.warn(missing, stacklevel=3)
             colors = _upglow.colors(self._native, native, scale, step_nm)
             while len(self._colors) >= _REMEMBERED_LIGHTS:
                 del self._colors[next(iter(self._colors))]
@@ -456,6 +460,8 @@ class Cube:
         """
         matrix = self.reradiation_matrix(of, wavelengths_nm, outside=outside, threads=threads)
         illuminant = self._contract.illuminant if light is None else Illuminant(light)
+        if missing := self._native.missing_ultraviolet(illuminant._native):
+            warnings.warn(missing, stacklevel=2)
         first, last, step = grid(wavelengths_nm)
         if first < 300 or last > 830:
             raise ValueError(f"wavelengths {first} to {last} nm, expected within 300 to 830 nm")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any, Literal
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -15,21 +17,27 @@ class Illuminant(NamedTable):
     Parameters
     ----------
     source
-        A built-in name (``D65``, ``D60``, ``D55``, ``D50``, ``A``, ``E``, ``FL2``, ``FL11``,
-        ``HP1``, ``LED-B3``; any case), the path of a
-        CSV file with the header ``wavelength_nm,power``, a pair ``(wavelengths_nm, power)`` of
-        arrays of shape (n,), or a ``colour.SpectralDistribution``. Sampled light covers 300 to 830
-        nm in steps of at most 10 nm; powers are 0 or more. It is linear between samples, so lines need
-        several samples across their width, unless samples are means over their steps.
+        A built-in name in any case, the path of a CSV file with the header
+        ``wavelength_nm,power``, a pair ``(wavelengths_nm, power)`` of arrays of shape (n,), or a
+        ``colour.SpectralDistribution``. Built in are ``D50``, ``D55``, ``D60``, ``D65``, ``D75``,
+        ``A``, ``E``, the CIE's lamps (``FL1`` to ``FL12``, ``FL3.1`` to ``FL3.15``, ``HP1`` to
+        ``HP5``, ``LED-B1`` to ``LED-V2``), daylight behind windows (``ID50``, ``ID65``), the
+        measurement conditions ``M0``, ``M1`` and ``M2``, blackbodies such as ``3000K``, and
+        daylights such as ``D6200K``. Sampled light covers 300 to 830 nm in steps of at most 10 nm;
+        powers are 0 or more. It is linear between samples, so lines need several samples across
+        their width, unless samples are means over their steps.
     name
         The name that files state; by default that of the source. A file's is its stem, or its whole
         name where the stem is that of a built-in light with other numbers; an object's gets
         " (samples)" there. A built-in ``name`` with other numbers is refused.
+    ends
+        The power beyond samples that end at 400 to 700 nm or farther, within 300 to 830 nm:
+        ``zero``, or ``hold`` for that of the nearest sample. By default such samples are refused.
 
     Raises
     ------
     ValueError
-        If the name is unknown or the samples are not a valid light.
+        If the name is unknown, the samples are not a valid light, or ``ends`` comes without samples.
     OSError
         If the file cannot be read.
 
@@ -45,6 +53,15 @@ class Illuminant(NamedTable):
     _native: _upglow.Illuminant
     _kind, _values = _upglow.Illuminant, "power"
 
+    def __init__(
+        self,
+        source: Any,
+        *,
+        name: str | None = None,
+        ends: Literal["zero", "hold"] | None = None,
+    ) -> None:
+        self._native = self._native_of(source, name, *([] if ends is None else [ends]))
+
     @classmethod
     def line(cls, peak_nm: float, fwhm_nm: float, *, name: str | None = None) -> Illuminant:
         """A lamp with one Gaussian line, such as an ultraviolet LED.
@@ -58,3 +75,12 @@ class Illuminant(NamedTable):
     def power(self) -> NDArray[np.float64]:
         """Relative power at each wavelength of ``upglow.FINE_NM``; shape (531,)."""
         return self._native.power
+
+    @property
+    def given_nm(self) -> tuple[int, int]:
+        """First and last wavelength at which the power is known, nm; it is zero beyond.
+
+        The CIE's lamps are given from 380 to 780 nm.
+        """
+        first, last = self._native.given_nm
+        return first, last

@@ -29,41 +29,51 @@ class NamedTable:
         self._native = self._native_of(source, name)
 
     @classmethod
-    def _native_of(cls, source: Any, name: str | None) -> Any:
+    def _native_of(cls, source: Any, name: str | None, *rules: str) -> Any:
+        """The native half; the native class takes `rules` of reading after the samples."""
         for native in (source, getattr(source, "_native", None)):
             if isinstance(native, cls._kind):
-                return native
+                return cls._without(rules, native)
         if isinstance(source, (str, os.PathLike)):
-            return cls._named_or_read(os.fspath(source), name)
+            return cls._named_or_read(os.fspath(source), name, rules)
         nm, values = samples(cls.__name__.lower(), source, columns=cls._columns)
         label = name or str(getattr(source, "name", "custom"))
         arrays = np.ascontiguousarray(nm), np.ascontiguousarray(values)
         try:
-            return cls._kind.from_samples(label, *arrays)
+            return cls._kind.from_samples(label, *arrays, *rules)
         except ValueError:
             # The source may be called like a built-in table with other numbers, such as one extended
             # to our range. Any other fault is found again.
             if not name:
                 with suppress(ValueError):
-                    return cls._kind.from_samples(f"{label} (samples)", *arrays)
+                    return cls._kind.from_samples(f"{label} (samples)", *arrays, *rules)
             raise
 
     @classmethod
-    def _named_or_read(cls, word: str, name: str | None) -> Any:
+    def _named_or_read(cls, word: str, name: str | None, rules: tuple[str, ...]) -> Any:
         """A built-in table, or one from a file, called `name` or after the file."""
         try:
-            return cls._kind.named(word)
+            native = cls._kind.named(word)
         except ValueError:
             if not is_path(word):
                 raise
+        else:
+            return cls._without(rules, native)
         path = Path(word)
         text = path.read_text(encoding="utf-8")
         try:
             if name:
-                return cls._kind.from_csv(name, text)
-            return cls._kind.from_csv_file(path, text)
+                return cls._kind.from_csv(name, text, *rules)
+            return cls._kind.from_csv_file(path, text, *rules)
         except ValueError as error:
             raise ValueError(f"{path}: {error}") from None
+
+    @classmethod
+    def _without(cls, rules: tuple[str, ...], native: Any) -> Any:
+        """A table that is not made of samples, which rules of reading would have no effect on."""
+        if rules:
+            raise ValueError(f"ends={rules[0]!r} with {native.name}, expected samples or a file")
+        return native
 
     @classmethod
     def names(cls) -> list[str]:
@@ -91,6 +101,6 @@ class NamedTable:
 
 
 def is_path(word: str) -> bool:
-    """Whether a word that is not a built-in name means a file or folder."""
+    """Whether a word that is not a built-in name means a file or folder; ``FL3.16`` does not."""
     path = Path(word)
-    return path.exists() or len(path.parts) > 1 or bool(path.suffix)
+    return path.exists() or len(path.parts) > 1 or path.suffix[1:2].isalpha()

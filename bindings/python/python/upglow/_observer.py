@@ -15,10 +15,11 @@ class Observer(NamedTable):
     Parameters
     ----------
     source
-        A built-in name (``cie-1931-2deg``, any case), the path of a CSV file with the header
+        A built-in name in any case (``cie-1931-2deg``, ``cie-1964-10deg``, ``cie-2015-2deg``,
+        ``cie-2015-10deg``), the path of a CSV file with the header
         ``wavelength_nm,x,y,z``, a pair ``(wavelengths_nm, matching)`` of arrays of shapes (n,) and
         (n, 3), or a ``colour.MultiSpectralDistributions`` of three, such as
-        ``colour.MSDS_CMFS["CIE 1964 10 Degree Standard Observer"]``. Samples cover at least 400 to
+        ``colour.MSDS_CMFS["Stockman & Sharpe 2 Degree Cone Fundamentals"]``. Samples cover at least 400 to
         700 nm in steps of at most 5 nm, and are 0 or more; beyond them, and where samples at either
         end are NaN, the functions are 0. Below 360 nm samples must be 0.
     name

@@ -7,7 +7,8 @@ use upglow_color::{Adaptation, Choice, Metric, RgbSpace, choices};
 use upglow_fit::{FitOptions, Method, Preset};
 use upglow_terminal::{Threads, count, in_range, number, word};
 
-use super::values::{SlopeLimit, lights, rgb_space, slope_limit};
+use super::LightArgs;
+use super::values::{SlopeLimit, lights, observers, rgb_space, slope_limit};
 
 #[derive(Clone, Debug, clap::Args)]
 #[command(allow_negative_numbers = true)]
@@ -32,9 +33,9 @@ pub(crate) struct ContractArgs {
     pub(crate) space: RgbSpace,
     #[arg(long, default_value = "D65", value_name = "NAME|FILE", help = format!("Light: {}", lights()))]
     pub(crate) illuminant: String,
-    /// Observer: cie-1931-2deg, or a CSV file of color-matching functions with the header
-    /// `wavelength_nm,x,y,z`
-    #[arg(long, default_value = "cie-1931-2deg", value_name = "NAME|FILE")]
+    #[command(flatten)]
+    pub(crate) light: LightArgs,
+    #[arg(long, default_value = "cie-1931-2deg", value_name = "NAME|FILE", help = observers())]
     pub(crate) observer: String,
     /// Chromatic adaptation from the white of the RGB space to that of the light
     #[arg(long, default_value_t, value_name = "NAME", value_parser = word::<Adaptation>())]

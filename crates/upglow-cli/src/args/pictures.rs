@@ -6,6 +6,7 @@ use upglow_color::{Adaptation, Grid, choices};
 use upglow_image::{Declared, DeclaredAlpha, Encoding, FORMATS, PngBits, Repair, Sample};
 use upglow_terminal::{Threads, word};
 
+use super::LightArgs;
 use super::values::{PictureSpace, bands, lights, picture_space, position, stops};
 use crate::pictures::Depth;
 
@@ -106,6 +107,8 @@ pub(crate) struct ResultArgs {
         )
     )]
     pub(crate) lights: Vec<String>,
+    #[command(flatten)]
+    pub(crate) light: LightArgs,
     /// exr is read by rows; tx is an EXR file of tiles at all levels, for texture systems, each level
     /// baked from filtered colors; both hold linear colors in the RGB space of the cube; png holds what a screen shows, in sRGB,
     /// adapted to the light (radiance only) [default: by the suffix of OUT, exr for folders]
@@ -147,6 +150,8 @@ pub(crate) struct CheckArgs {
         help = format!("Light: {} [default: D65]", lights())
     )]
     pub(crate) illuminant: Option<String>,
+    #[command(flatten)]
+    pub(crate) light: LightArgs,
     /// Chromatic adaptation from the white of the RGB space to that of the light
     /// [default: bradford]
     #[arg(long, value_name = "NAME", value_parser = word::<Adaptation>(), conflicts_with = "cube")]

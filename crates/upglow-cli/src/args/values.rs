@@ -1,6 +1,6 @@
 //! Parsers of option values that are neither a word nor a number.
 
-use upglow_color::{Grid, Illuminant, RgbSpace};
+use upglow_color::{Grid, Illuminant, Observer, RgbSpace};
 use upglow_image::{Encoding, InteropSpace};
 use upglow_terminal::parsed;
 
@@ -60,8 +60,17 @@ pub(super) fn rgb_space(text: &str) -> Result<RgbSpace, String> {
 
 /// The lights that an option takes, for its help.
 pub(super) fn lights() -> String {
-    let names = Illuminant::NAMES.join(", ");
+    let names = Illuminant::FAMILIES;
     format!("{names}, or a CSV file with the header `wavelength_nm,power`")
+}
+
+/// The observers that an option takes, for its help.
+pub(super) fn observers() -> String {
+    let names = Observer::NAMES.join(", ");
+    format!(
+        "Observer: {names}, or a CSV file of color-matching functions with the header \
+         `wavelength_nm,x,y,z`"
+    )
 }
 
 /// A factor of light as a power of two.

@@ -14,7 +14,7 @@ use upglow_terminal::{Console, Failure, Report};
 
 use crate::args::{BakeArgs, BakeForm, BakeFormat, SampleName};
 use crate::batch::{Batch, Interpreted};
-use crate::output::{Lines, warn};
+use crate::output::{Lines, warn, warn_of_ultraviolet};
 use crate::pictures::{Depth, Input, Outputs};
 use crate::{files, pictures, plan};
 
@@ -25,6 +25,8 @@ struct BakeReport {
     form: &'static str,
     /// The light of the form radiance.
     light: Option<String>,
+    /// What the light lacks that the dyes absorb.
+    missing_ultraviolet: Option<String>,
     width: usize,
     height: usize,
     channels: usize,
@@ -69,6 +71,9 @@ pub(crate) fn run(args: &BakeArgs, console: &Console) -> Result<(), Failure> {
     let baker = |form: &Form| Baker::new(&cube, form.clone(), options.clone());
     let bakers: Result<Vec<Baker<'_>>, BakeError> = forms.iter().map(baker).collect();
     let bakers = bakers.map_err(|error| refused(error, &args.cube))?;
+    let missing = |form: &Form| cube.model().missing_ultraviolet(form.light()?);
+    let missing_ultraviolet: Vec<Option<String>> =
+        forms.iter().map(|form| warn_of_ultraviolet(missing(form))).collect();
     let mut batch = Batch::new("baked", &inputs);
     let mut pairs = inputs.pictures.iter().zip(&outputs);
     let ended = pairs.try_for_each(|(Input { path: input, .. }, outputs)| {
@@ -96,6 +101,7 @@ pub(crate) fn run(args: &BakeArgs, console: &Console) -> Result<(), Failure> {
                 file: output.display().to_string(),
                 form: args.form.name(),
                 light: lights.get(i).map(|&light| light.to_owned()),
+                missing_ultraviolet: missing_ultraviolet[i].clone(),
                 width: baked.size[0],
                 height: baked.size[1],
                 channels: baked.channels,
@@ -135,11 +141,12 @@ fn forms(args: &BakeArgs, format: BakeFormat) -> Result<Vec<Form>, Failure> {
     use BakeForm::{Material, Radiance, Spectral};
     let result = &args.result;
     let is_png = format == BakeFormat::Png;
-    let options: [(&str, bool, &[BakeForm]); 5] = [
+    let options: [(&str, bool, &[BakeForm]); 6] = [
         ("--fast", result.fast, &[Material]),
         ("--bands", result.bands.is_some(), &[Spectral]),
         ("--compact", result.compact, &[Spectral]),
         ("--light", !result.lights.is_empty(), &[Radiance]),
+        ("--light-ends", result.light.ends.is_some(), &[Radiance]),
         ("--format png", is_png, &[Radiance]),
     ];
     plan::refuse_ignored("--as", args.form, &options)?;
@@ -163,7 +170,7 @@ fn forms(args: &BakeArgs, format: BakeFormat) -> Result<Vec<Form>, Failure> {
             Err(Failure::option("--light", message))
         }
         Radiance => {
-            let lights = result.lights.iter().map(|text| plan::light("--light", text));
+            let lights = plan::lights("--light", &result.lights, &result.light)?;
             let form = |light| match format {
                 BakeFormat::Exr | BakeFormat::Tx => Form::Radiance { light },
                 BakeFormat::Png => Form::Screen {
@@ -172,7 +179,7 @@ fn forms(args: &BakeArgs, format: BakeFormat) -> Result<Vec<Form>, Failure> {
                     exposure_stops: result.exposure.unwrap_or_default(),
                 },
             };
-            lights.map(|light| light.map(form)).collect()
+            Ok(lights.into_iter().map(form).collect())
         }
     }
 }

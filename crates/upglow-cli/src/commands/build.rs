@@ -9,7 +9,7 @@ use upglow_terminal::{Console, Failure, Report, check_stopped};
 
 use crate::args::BuildArgs;
 use crate::files;
-use crate::output::{Lines, warn};
+use crate::output::{Lines, warn, warn_of_ultraviolet};
 use crate::plan::{BuildPlan, options_failure};
 
 #[derive(Debug, Serialize)]
@@ -22,12 +22,15 @@ struct BuildReport {
     preset: Option<String>,
     time_s: f64,
     summary: CubeSummary,
+    /// What the light lacks that the dyes absorb.
+    missing_ultraviolet: Option<String>,
 }
 
 pub(crate) fn run(args: &BuildArgs, console: &Console) -> Result<(), Failure> {
     let BuildPlan { contract, model, options } = BuildPlan::new(args)?;
     let resolution = args.fit.resolution;
     warn_of_unpublished_yields(&model);
+    let missing_ultraviolet = warn_of_ultraviolet(model.missing_ultraviolet(&contract.illuminant));
     let start = Instant::now();
     let built = console
         .work(args.fit.threads, |bar| build_cube(&contract, &model, options, resolution, bar))?;
@@ -48,6 +51,7 @@ pub(crate) fn run(args: &BuildArgs, console: &Console) -> Result<(), Failure> {
         preset: cube.fit().preset.clone(),
         time_s: start.elapsed().as_secs_f64(),
         summary: CubeSummary::of(&cube),
+        missing_ultraviolet,
     })
 }
 

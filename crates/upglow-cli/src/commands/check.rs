@@ -14,7 +14,7 @@ use upglow_terminal::{Console, Failure, Report};
 use super::bake::picture_failure;
 use crate::args::CheckArgs;
 use crate::batch::{Batch, Interpreted};
-use crate::output::Lines;
+use crate::output::{Lines, warn_of_ultraviolet};
 use crate::pictures::Input;
 use crate::{files, pictures, plan};
 
@@ -26,6 +26,8 @@ struct PictureReport {
     heat_map: Option<String>,
     /// The report on all pictures.
     page: Option<String>,
+    /// What the light lacks that dyes absorb.
+    missing_ultraviolet: Option<String>,
 }
 
 pub(crate) fn run(args: &CheckArgs, console: &Console) -> Result<(), Failure> {
@@ -33,6 +35,12 @@ pub(crate) fn run(args: &CheckArgs, console: &Console) -> Result<(), Failure> {
     check_outputs(args, &inputs.paths())?;
     let cube = args.cube.as_deref().map(files::read_cube).transpose()?;
     let contract = contract(args, cube.as_ref())?;
+    let light = &contract.illuminant;
+    let missing = match &cube {
+        Some(cube) => cube.model().missing_ultraviolet(light),
+        None => light.missing_ultraviolet(),
+    };
+    let missing_ultraviolet = warn_of_ultraviolet(missing);
     let mut checker = Checker::new(contract, args.picture.declared());
     if let (Some(cube), Some(path)) = (&cube, &args.cube) {
         let checked = checker.with_cube(cube, path.display().to_string());
@@ -57,7 +65,9 @@ pub(crate) fn run(args: &CheckArgs, console: &Console) -> Result<(), Failure> {
         let shown = |path: &Option<PathBuf>| path.as_ref().map(|path| path.display().to_string());
         found.into_iter().try_for_each(|found| {
             let (heat_map, page) = (shown(&args.heat_map), shown(&args.output));
-            batch.add(console, PictureReport { headline: found.headline(), found, heat_map, page })
+            let (headline, missing_ultraviolet) = (found.headline(), missing_ultraviolet.clone());
+            let report = PictureReport { headline, found, heat_map, page, missing_ultraviolet };
+            batch.add(console, report)
         })
     });
     batch.finish(console, ended)
@@ -91,8 +101,9 @@ fn check_outputs(args: &CheckArgs, inputs: &[PathBuf]) -> Result<(), Failure> {
 /// The light and adaptation of the options or the cube. The RGB space is that of each picture.
 fn contract(args: &CheckArgs, cube: Option<&Cube>) -> Result<Contract, Failure> {
     let mut contract = cube.map(|cube| cube.contract().clone()).unwrap_or_default();
-    if let Some(text) = &args.illuminant {
-        contract.illuminant = plan::light("--illuminant", text)?;
+    let given: Vec<&str> = args.illuminant.as_deref().into_iter().collect();
+    if let Some(light) = plan::lights("--illuminant", &given, &args.light)?.pop() {
+        contract.illuminant = light;
     }
     if let Some(adaptation) = args.adapt {
         contract.adaptation = adaptation;

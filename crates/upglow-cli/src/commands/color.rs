@@ -10,18 +10,20 @@ use upglow_terminal::{Console, Failure};
 
 use super::color_report::{ColorReport, LightReport, PartReport};
 use crate::args::ColorArgs;
+use crate::output::warn_of_ultraviolet;
 use crate::plot::{Curves, Figure, Swatch, svg};
 use crate::{files, plan};
 
 /// The lights under which the material is shown besides the cube's own: those that were given, or
 /// standard lights and an ultraviolet lamp.
 fn lights(args: &ColorArgs) -> Result<Vec<Illuminant>, Failure> {
-    if args.lights.is_empty() {
+    let given = plan::lights("--light", &args.lights, &args.light)?;
+    if given.is_empty() {
         let lamp = Illuminant::line(&format!("{LAMP_PEAK_NM} nm lamp"), LAMP_PEAK_NM, LAMP_FWHM_NM);
         let standard = LIGHTS.iter().filter_map(|name| Illuminant::named(name).ok());
         return Ok(standard.chain(lamp.ok()).collect());
     }
-    args.lights.iter().map(|text| plan::light("--light", text)).collect()
+    Ok(given)
 }
 
 /// The standard lights.
@@ -131,18 +133,29 @@ impl<'a> Shown<'a> {
     /// The color of the material under the cube's own light and the others.
     fn lights(&self) -> Vec<LightReport> {
         let contract = self.cube.contract();
-        let own = contract.illuminant.name();
+        let own = &contract.illuminant;
         let mut lights = vec![self.under(own, true, &self.colorimetry)];
-        lights.extend(self.lights.iter().filter(|light| light.name() != own).map(|light| {
+        lights.extend(self.lights.iter().filter(|light| light.name() != own.name()).map(|light| {
             let seen = contract.seen_under(light, Grid::FIT);
-            self.under(light.name(), seen.is_adapted, &seen.colorimetry)
+            self.under(light, seen.is_adapted, &seen.colorimetry)
         }));
         lights
     }
 
-    fn under(&self, name: &str, is_adapted: bool, colorimetry: &Colorimetry) -> LightReport {
+    fn under(
+        &self,
+        light: &Illuminant,
+        is_adapted: bool,
+        colorimetry: &Colorimetry,
+    ) -> LightReport {
         let xyz = self.mixture.color(&ModelOnGrid::new(self.cube.model(), colorimetry));
-        LightReport { name: name.into(), is_adapted, xyz, rgb: colorimetry.rgb_from_xyz(xyz) }
+        LightReport {
+            name: light.name().into(),
+            is_adapted,
+            xyz,
+            rgb: colorimetry.rgb_from_xyz(xyz),
+            missing_ultraviolet: warn_of_ultraviolet(self.mixture.missing_ultraviolet(light)),
+        }
     }
 
     fn figure(&self) -> Figure<'_> {

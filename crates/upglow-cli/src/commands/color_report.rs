@@ -90,6 +90,8 @@ pub(crate) struct LightReport {
     pub(crate) is_adapted: bool,
     pub(crate) xyz: Xyz,
     pub(crate) rgb: LinearRgb,
+    /// What the light lacks that a dye of the material absorbs.
+    pub(crate) missing_ultraviolet: Option<String>,
 }
 
 impl<'a> PartReport<'a> {

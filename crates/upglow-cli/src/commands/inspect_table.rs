@@ -44,8 +44,9 @@ pub(super) fn run(args: InspectArgs, console: &Console) -> Result<(), Failure> {
         let message = "not given, expected the RGB space of the table, which does not name it";
         return Err(Failure::option("--space", message));
     };
-    let illuminant = args.illuminant.as_deref().map(|text| plan::light("--illuminant", text));
-    let illuminant = illuminant.transpose()?.unwrap_or_default();
+    let given: Vec<&str> = args.illuminant.as_deref().into_iter().collect();
+    let mut given = plan::lights("--illuminant", &given, &args.light)?;
+    let illuminant = given.pop().unwrap_or_default();
     let contract = plan::checked(Contract { space, illuminant, ..Contract::default() })?;
     let bytes = std::fs::read(&args.file)
         .map_err(|error| Failure::system(&args.file, &error, "a coefficient table"))?;

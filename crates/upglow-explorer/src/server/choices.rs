@@ -24,7 +24,7 @@ pub(super) fn built_in() -> Value {
     json!({
         "presets": presets.collect::<Vec<_>>(),
         "spaces": RgbSpace::names(),
-        "lights": Illuminant::NAMES,
+        "lights": Illuminant::names(),
         "observers": Observer::NAMES,
         "dye_sets": dye_sets.collect::<Vec<_>>(),
         "encodings": ENCODINGS.map(|encoding| encoding.to_string()),

@@ -116,7 +116,7 @@ impl Drops {
     /// Keeps a light of this CSV text.
     pub(super) fn add_light(&self, name: &str, text: &str) -> Result<Illuminant, Refusal> {
         let file = table_name(name);
-        let light = Illuminant::from_csv_file(Path::new(&file), text)
+        let light = Illuminant::from_csv_file(Path::new(&file), text, None)
             .map_err(|error| Refusal::unusable(format!("{file}: {error}")))?;
         let folder = TempDir::new_in(&self.folder).map_err(not_kept)?;
         let path = folder.path().join(&file);

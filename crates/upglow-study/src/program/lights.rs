@@ -1,6 +1,6 @@
 //! The lights that materials are not fitted under.
 
-use upglow_color::{Illuminant, Spectrum};
+use upglow_color::Illuminant;
 use upglow_fit::ultraviolet_lamp;
 
 /// Below this wavelength, nm, daylight without ultraviolet has no power: that of D65 behind a filter.
@@ -24,10 +24,5 @@ fn named(name: &str) -> Illuminant {
 }
 
 fn daylight_without_ultraviolet() -> Illuminant {
-    let daylight = named("D65");
-    let power = daylight.power();
-    let samples = power.grid().wavelengths_nm().zip(power.values());
-    let cut = samples.map(|(nm, &power)| if nm < CUT_NM { 0.0 } else { power }).collect();
-    let cut = Spectrum::new(power.grid(), cut).expect("it has the samples of D65");
-    Illuminant::from_spectrum("D65 from 400 nm", &cut).expect("it is visible")
+    named("D65").cut_below("D65 from 400 nm", CUT_NM).expect("it is visible")
 }

@@ -382,7 +382,7 @@ mod tests {
     use crate::material::dye_model::{DyeModel, DyeOptions};
     use crate::material::dye_set::DyeSet;
     use proptest::prelude::*;
-    use upglow_color::{Contract, Observer};
+    use upglow_color::{Contract, Illuminant, Observer};
 
     fn cube() -> Cube {
         let set = DyeSet::named("open8").unwrap();
@@ -410,6 +410,83 @@ mod tests {
         assert!(Cube::without_materials(&cube.header_json(), CubeCurves::default()).is_err());
     }
 
+    /// The cube under another light or for another observer.
+    fn with_contract(contract: Contract) -> Cube {
+        let (model, fit, nodes) =
+            (cube().model().clone(), cube().fit().clone(), cube().nodes().to_vec());
+        Cube::new(contract, model, fit, 3, nodes).unwrap()
+    }
+
+    #[test]
+    fn every_built_in_light_and_observer_survives_a_file() {
+        let lights = Illuminant::names().into_iter().chain(["2856.5K", "D6200K"]);
+        let lit = lights.map(|name| Contract {
+            illuminant: Illuminant::named(name).unwrap(),
+            ..Contract::default()
+        });
+        let seen = Observer::NAMES.map(|name| Contract {
+            observer: Observer::named(name).unwrap(),
+            ..Contract::default()
+        });
+        for contract in lit.chain(seen) {
+            let cube = with_contract(contract);
+            let bytes = cube.to_bytes();
+            let back = Cube::from_bytes(&bytes).unwrap();
+            assert_eq!(back, cube);
+            assert_eq!(back.to_bytes(), bytes);
+            assert!(!cube.header_json().contains("given_nm"));
+        }
+    }
+
+    /// A lamp of a file that ends at 390 and 720 nm.
+    fn short_lamp() -> Cube {
+        let power = Spectrum::new(Grid::try_new(390, 720, 10).unwrap(), vec![2.0; 34]).unwrap();
+        let illuminant = Illuminant::from_spectrum("lamp", &power).unwrap();
+        with_contract(Contract { illuminant, ..Contract::default() })
+    }
+
+    #[test]
+    fn a_file_says_where_a_light_is_known() {
+        let cube = short_lamp();
+        let bytes = cube.to_bytes();
+        let back = Cube::from_bytes(&bytes).unwrap();
+        assert_eq!(back, cube);
+        assert_eq!(back.contract().illuminant.given_nm(), [390, 720]);
+        assert_eq!(back.to_bytes(), bytes);
+        let json = cube.header_json();
+        for (stated, refused) in [
+            ("[391,720]", "illuminant_given_nm is [391, 720], expected the part"),
+            ("[390,700]", "illuminant_given_nm is [390, 700], expected the part"),
+            ("[0,4294967295]", "illuminant_given_nm is [0, 4294967295], expected the part"),
+            ("[720,390]", "illuminant_given_nm: grid 720 to 390 nm"),
+        ] {
+            let json = json.replace("[390,720]", stated);
+            let line = Cube::without_materials(&json, cube.curves()).unwrap_err().to_string();
+            assert!(line.contains(refused), "{line}");
+        }
+    }
+
+    #[test]
+    fn what_an_earlier_version_named_does_not_hide_what_is_built_in_now() {
+        let cube = short_lamp();
+        let named = |light: &str| {
+            let stated = format!("\"illuminant\":\"{light}\"");
+            let json = cube.header_json().replace("\"illuminant\":\"lamp\"", &stated);
+            Cube::without_materials(&json, cube.curves())
+        };
+        for light in ["FL4", "m2", "4000K", "D5500K"] {
+            let found = named(light).unwrap();
+            assert_eq!(found.contract().illuminant.name(), format!("{light} (samples)"));
+        }
+        let line = named("hp1").unwrap_err().to_string();
+        assert!(line.contains("\"hp1\" is a built-in illuminant"), "{line}");
+
+        let cube = with_observer(|_, value| 0.99 * value);
+        let json = cube.header_json().replace("glasses", "CIE 1964 10°");
+        let found = Cube::without_materials(&json, cube.curves()).unwrap();
+        assert_eq!(found.contract().observer.name(), "CIE 1964 10° (samples)");
+    }
+
     /// A cube of the standard observer with samples edited by their index and value.
     fn with_observer(edit: impl Fn(usize, f64) -> f64) -> Cube {
         let mut contract = Contract::default();
@@ -419,9 +496,7 @@ mod tests {
         };
         let matching = contract.observer.matching().each_ref().map(curve);
         contract.observer = Observer::from_spectra("glasses", matching).unwrap();
-        let (model, fit, nodes) =
-            (cube().model().clone(), cube().fit().clone(), cube().nodes().to_vec());
-        Cube::new(contract, model, fit, 3, nodes).unwrap()
+        with_contract(contract)
     }
 
     #[test]

@@ -5,7 +5,8 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use upglow_color::{
-    Adaptation, Contract, Grid, Illuminant, MeasuredDye, Observer, RgbSpace, Spectrum,
+    Adaptation, Contract, Grid, Illuminant, IlluminantError, MeasuredDye, NameError, Observer,
+    ObserverError, RgbSpace, Spectrum,
 };
 
 use crate::cube::error::ReadCubeError;
@@ -55,6 +56,9 @@ pub(crate) struct ContractHeader {
     primaries_xy: [[f64; 2]; 3],
     white_xy: [f64; 2],
     illuminant: String,
+    /// Where the power is known, if that is not everywhere and does not follow from the name.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    illuminant_given_nm: Option<[u32; 2]>,
     observer: String,
     adaptation: String,
     fit_grid_nm: [u32; 3],
@@ -196,6 +200,7 @@ impl ContractHeader {
             primaries_xy: contract.space.primaries(),
             white_xy: contract.space.white(),
             illuminant: contract.illuminant.name().into(),
+            illuminant_given_nm: stated_nm(&contract.illuminant),
             observer: contract.observer.name().into(),
             adaptation: contract.adaptation.to_string(),
             fit_grid_nm: grid_numbers(Grid::FIT),
@@ -215,12 +220,38 @@ impl ContractHeader {
             .map_err(ReadCubeError::value("rgb_space"))?;
         let power =
             Spectrum::new(Grid::FINE, illuminant).map_err(ReadCubeError::value("illuminant"))?;
-        let illuminant = Illuminant::from_spectrum(&self.illuminant, &power)
-            .map_err(ReadCubeError::value("illuminant"))?;
+        let power = self.given_power(power)?;
+        let illuminant = beside_later_names(
+            &self.illuminant,
+            &FIRST_LIGHTS,
+            |name| Illuminant::from_spectrum(name, &power),
+            |error| matches!(error, IlluminantError::Name(NameError::Taken { .. })),
+        )
+        .map_err(ReadCubeError::value("illuminant"))?;
+        if stated_nm(&illuminant) != self.illuminant_given_nm {
+            let found = format!("{:?}", self.illuminant_given_nm.unwrap_or_default());
+            let expected = format!("none for the built-in {}", illuminant.name());
+            return Err(ReadCubeError::Field { field: GIVEN_NM, found, expected });
+        }
         let adaptation: Adaptation = parse_field("adaptation", &self.adaptation)?;
         let contract = Contract { space, illuminant, observer, adaptation };
         contract.check().map_err(ReadCubeError::value("contract"))?;
         Ok(contract)
+    }
+
+    /// The power of the light where it is known. It must be zero beyond.
+    fn given_power(&self, power: Spectrum) -> Result<Spectrum, ReadCubeError> {
+        let Some([first_nm, last_nm]) = self.illuminant_given_nm else { return Ok(power) };
+        let grid = Grid::try_new(first_nm, last_nm, Grid::FINE.step_nm())
+            .map_err(ReadCubeError::value(GIVEN_NM))?;
+        let within = Grid::FINE.first_nm() <= first_nm && last_nm <= Grid::FINE.last_nm();
+        let given = if within { power.resampled(grid) } else { power.clone() };
+        if !within || given.resampled(Grid::FINE) != power {
+            let expected = "the part of 300 to 830 nm where the light has power".into();
+            let found = format!("[{first_nm}, {last_nm}]");
+            return Err(ReadCubeError::Field { field: GIVEN_NM, found, expected });
+        }
+        Ok(given)
     }
 
     /// The observer of this name: built in, or with the file's color-matching functions.
@@ -232,8 +263,46 @@ impl ContractHeader {
         };
         let curve =
             |values| Spectrum::new(Grid::FINE, values).map_err(ReadCubeError::value("observer"));
-        Observer::from_spectra(&self.observer, [curve(x)?, curve(y)?, curve(z)?])
-            .map_err(ReadCubeError::value("observer"))
+        let matching = [curve(x)?, curve(y)?, curve(z)?];
+        beside_later_names(
+            &self.observer,
+            &FIRST_OBSERVERS,
+            |name| Observer::from_spectra(name, matching.clone()),
+            |error| matches!(error, ObserverError::Name(NameError::Taken { .. })),
+        )
+        .map_err(ReadCubeError::value("observer"))
+    }
+}
+
+const GIVEN_NM: &str = "illuminant_given_nm";
+
+/// What a file states of where the power of a light is known.
+fn stated_nm(light: &Illuminant) -> Option<[u32; 2]> {
+    let fine_nm = [Grid::FINE.first_nm(), Grid::FINE.last_nm()];
+    let is_stated = light.given_nm() != fine_nm && Illuminant::named(light.name()).is_err();
+    is_stated.then(|| light.given_nm())
+}
+
+/// The lights that were built in before any file was written: no file has these names for other numbers.
+const FIRST_LIGHTS: [&str; 10] =
+    ["D65", "D60", "D55", "D50", "A", "E", "FL2", "FL11", "HP1", "LED-B3"];
+
+/// The same of observers.
+const FIRST_OBSERVERS: [&str; 2] = ["cie-1931-2deg", "CIE 1931 2°"];
+
+/// What a file calls `name`. If that has become the name of something built in with other numbers since
+/// the file was written, it is called "`name` (samples)".
+fn beside_later_names<T, E>(
+    name: &str,
+    first: &[&str],
+    make: impl Fn(&str) -> Result<T, E>,
+    is_taken: impl Fn(&E) -> bool,
+) -> Result<T, E> {
+    match make(name) {
+        Err(error) if is_taken(&error) && !first.iter().any(|n| n.eq_ignore_ascii_case(name)) => {
+            make(&format!("{name} (samples)"))
+        }
+        made => made,
     }
 }
 

@@ -1,6 +1,6 @@
 //! Weighted mixtures of materials: what a look-up returns, ready to evaluate.
 
-use upglow_color::{Grid, Xyz};
+use upglow_color::{Grid, Illuminant, MissingUltraviolet, Xyz};
 
 use crate::bispectral::{Bispectral, Sample};
 use crate::material::Material;
@@ -42,6 +42,14 @@ impl<'m> Mixture<'m> {
     /// The materials that take part, with their weights.
     pub fn parts(&self) -> impl Iterator<Item = (f64, Material)> + '_ {
         self.parts.iter().copied().filter(|(weight, _)| *weight > 0.0)
+    }
+
+    /// What is to say about this material under a light: ultraviolet that is not known, where a dye in
+    /// it absorbs.
+    pub fn missing_ultraviolet(&self, light: &Illuminant) -> Option<MissingUltraviolet> {
+        light.missing_ultraviolet().filter(|missing| {
+            self.lobes().any(|(_, lobe)| missing.wavelengths_nm().any(|nm| lobe.absorbed(nm) > 0.0))
+        })
     }
 
     /// The re-radiation (Donaldson) matrix over the bands around `grid`'s wavelengths.

@@ -1,5 +1,7 @@
 //! What fluorescence is made of: measured dyes, or bells by formula.
 
+use upglow_color::{Illuminant, MissingUltraviolet};
+
 use crate::material::analytic_model::AnalyticModel;
 use crate::material::dye_model::{DyeModel, QuantumYield};
 use crate::material::film_model::FilmModel;
@@ -40,6 +42,21 @@ impl Model {
             Self::Film(film) => Some(film.dyes()),
             Self::Reflectance | Self::Analytic(_) => None,
         }
+    }
+
+    /// What is to say about materials of this model under a light: ultraviolet that is not known,
+    /// where one of the dyes absorbs it.
+    pub fn missing_ultraviolet(&self, light: &Illuminant) -> Option<MissingUltraviolet> {
+        light.missing_ultraviolet().filter(|missing| match self {
+            Self::Reflectance => false,
+            // Bells may lie anywhere.
+            Self::Analytic(_) => true,
+            Self::Dyes(_) | Self::Film(_) => {
+                let curves = self.dyes().into_iter().flat_map(DyeModel::curves);
+                let below = missing.wavelengths_nm();
+                below.clone().any(|nm| curves.clone().any(|dye| dye.absorption.at(nm) > 0.0))
+            }
+        })
     }
 
     /// What is conserved when absorbed light is re-emitted, if any is.
