@@ -165,6 +165,8 @@ fn lights_that_end_early() {
     let missing = |light: usize| told["lights"][light]["missing_ultraviolet"].as_str();
     let fl11 = "FL11 is given from 380 nm on: what dyes absorb below is not counted";
     assert_eq!([missing(0), missing(1)], [None, Some(fl11)]);
+    let line = folder.refused(2, "inspect cube --light-ends zero");
+    assert!(line.starts_with("--light-ends: given for a cube"), "{line}");
     // Gray has no dye.
     let gray = folder.run("color cube 0.5 0.5 0.5 --light FL11");
     assert_eq!((gray.status, gray.stderr.as_str()), (0, ""));

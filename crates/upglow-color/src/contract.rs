@@ -144,10 +144,13 @@ mod tests {
     use crate::spectrum::Spectrum;
 
     #[test]
-    fn every_built_in_light_makes_a_valid_contract() {
-        for name in Illuminant::names() {
-            let illuminant = Illuminant::named(name).unwrap();
-            assert_eq!(Contract { illuminant, ..Contract::default() }.check(), Ok(()), "{name}");
+    fn every_built_in_light_and_observer_make_a_valid_contract() {
+        let pairs = |name| Observer::NAMES.map(|observer| (name, observer));
+        for (light, observer) in Illuminant::names().into_iter().flat_map(pairs) {
+            let illuminant = Illuminant::named(light).unwrap();
+            let seen_by = Observer::named(observer).unwrap();
+            let contract = Contract { illuminant, observer: seen_by, ..Contract::default() };
+            assert_eq!(contract.check(), Ok(()), "{light} {observer}");
         }
     }
 

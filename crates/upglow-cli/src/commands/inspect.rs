@@ -58,7 +58,11 @@ pub(crate) fn run(args: InspectArgs, console: &Console) -> Result<(), Failure> {
     if inspect_table::is_table(&args.file) {
         return inspect_table::run(args, console);
     }
-    let given = [("--space", args.space.is_some()), ("--illuminant", args.illuminant.is_some())];
+    let given = [
+        ("--space", args.space.is_some()),
+        ("--illuminant", args.illuminant.is_some()),
+        ("--light-ends", args.light.ends.is_some()),
+    ];
     if let Some((option, _)) = given.into_iter().find(|(_, given)| *given) {
         let message = "given for a cube, which stores its own, expected a coefficient table";
         return Err(Failure::option(option, message));
