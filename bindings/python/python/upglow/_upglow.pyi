@@ -71,7 +71,7 @@ class Illuminant:
     def wavelengths_nm() -> _Doubles: ...
     name: Final[str]
     power: Final[_Doubles]
-    given_nm: Final[tuple[int, int]]
+    given_nm: Final[list[int]]
 
 @final
 class Observer:
