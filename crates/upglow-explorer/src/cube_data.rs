@@ -1,10 +1,10 @@
 //! What the page knows of a cube: its shader's files, colors of its nodes, and the lights.
 
-use std::borrow::Cow;
 use std::collections::HashMap;
 
 use rayon::prelude::*;
-use safetensors::{Dtype, View};
+use safetensors::Dtype;
+use safetensors::tensor::TensorView;
 use serde_json::{Value, json};
 use upglow::{Cube, ModelOnGrid};
 use upglow_color::{Adaptation, Contract, Grid, RgbSpace};
@@ -61,9 +61,9 @@ impl CubeData {
         tensors.extend(node_tensors(cube));
         tensors.extend(light_tensors(&shown));
         let metadata = HashMap::from([(NAME.into(), description(cube, name, &shown).to_string())]);
-        let views = tensors.iter().map(|tensor| (tensor.name, tensor));
+        let views = tensors.iter().map(|tensor| (tensor.name, tensor.view()));
         let arrays = safetensors::serialize(views, Some(metadata))
-            .expect("arrays are as long as their shapes");
+            .expect("names and metadata are plain text");
         Ok(Self { script, shader, arrays })
     }
 
@@ -181,23 +181,10 @@ impl Tensor {
         let bytes = values.into_iter().flat_map(|value| value.to_le_bytes()).collect();
         Self { name, dtype: Dtype::F64, shape: shape.into(), bytes }
     }
-}
 
-impl View for &Tensor {
-    fn dtype(&self) -> Dtype {
-        self.dtype
-    }
-
-    fn shape(&self) -> &[usize] {
-        &self.shape
-    }
-
-    fn data(&self) -> Cow<'_, [u8]> {
-        Cow::Borrowed(&self.bytes)
-    }
-
-    fn data_len(&self) -> usize {
-        self.bytes.len()
+    fn view(&self) -> TensorView<'_> {
+        TensorView::new(self.dtype, self.shape.clone(), &self.bytes)
+            .expect("arrays are as long as their shapes")
     }
 }
 

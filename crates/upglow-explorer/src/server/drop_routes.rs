@@ -9,6 +9,8 @@ use axum::extract::{Path, State};
 use axum::http::Uri;
 use axum::routing::{get, post};
 use serde_json::json;
+use tempfile::TempPath;
+use tokio::sync::OwnedSemaphorePermit;
 use upglow_color::{Choice as _, Grid, RgbSpace};
 use upglow_image::{BispectralUnit, Declared, DeclaredAlpha, Encoding, Excerpt};
 
@@ -77,6 +79,22 @@ fn little_endian(rgb: &[[f32; 3]]) -> Vec<u8> {
     rgb.iter().flatten().flat_map(|v| v.to_le_bytes()).collect()
 }
 
+/// A dropped file, and the permission to read it.
+struct Received {
+    turn: OwnedSemaphorePermit,
+    id: u32,
+    path: TempPath,
+}
+
+/// Writes a body to a file. One at a time, so that one file's memory is the most that files need.
+async fn received(shared: &Shared, name: &str, body: Body) -> Result<Received, Refusal> {
+    let turn = shared.files.clone().acquire_owned().await.map_err(Refusal::bad)?;
+    let id = shared.drops.new_id();
+    let path = shared.drops.path(id, name)?;
+    body::file(body, Limit::PICTURE, path.to_path_buf()).await?;
+    Ok(Received { turn, id, path })
+}
+
 async fn picture(State(shared): State<Arc<Shared>>, uri: Uri, body: Body) -> Answer {
     let query = Query::of(&uri);
     let declared = Declared {
@@ -86,11 +104,7 @@ async fn picture(State(shared): State<Arc<Shared>>, uri: Uri, body: Body) -> Ans
         layer: query.text("layer").map(String::from),
     };
     let (name, held) = (query.name(), shared.shelf.get(query.cube()?)?);
-    // One at a time, so that one file's memory is the most that files need.
-    let turn = shared.files.clone().acquire_owned().await.map_err(Refusal::bad)?;
-    let id = shared.drops.new_id();
-    let path = shared.drops.path(id, &name)?;
-    body::file(body, Limit::PICTURE, path.to_path_buf()).await?;
+    let Received { turn, id, path } = received(&shared, &name, body).await?;
     work(move || {
         let _turn = turn;
         let refused =
@@ -148,10 +162,7 @@ async fn spectral(State(shared): State<Arc<Shared>>, uri: Uri, body: Body) -> An
     let query = Query::of(&uri);
     let unit = query.read("unit", BispectralUnit::named)?;
     let (name, held) = (query.name(), shared.shelf.get(query.cube()?)?);
-    let turn = shared.files.clone().acquire_owned().await.map_err(Refusal::bad)?;
-    let id = shared.drops.new_id();
-    let path = shared.drops.path(id, &name)?;
-    body::file(body, Limit::PICTURE, path.to_path_buf()).await?;
+    let Received { turn, id, path } = received(&shared, &name, body).await?;
     work(move || {
         let _turn = turn;
         let colorimetry = held.cube.contract().on(Grid::FIT);

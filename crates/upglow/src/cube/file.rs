@@ -2,11 +2,11 @@
 //!
 //! `docs/cube-format.md` describes it for readers in other languages.
 
-use std::borrow::Cow;
 use std::collections::HashMap;
 use std::path::Path;
 
-use safetensors::{Dtype, SafeTensors, View};
+use safetensors::tensor::TensorView;
+use safetensors::{Dtype, SafeTensors};
 use sha2::{Digest, Sha256};
 use upglow_color::{Grid, Spectrum};
 
@@ -36,24 +36,6 @@ struct Tensor {
     bytes: Vec<u8>,
 }
 
-impl View for &Tensor {
-    fn dtype(&self) -> Dtype {
-        self.dtype
-    }
-
-    fn shape(&self) -> &[usize] {
-        &self.shape
-    }
-
-    fn data(&self) -> Cow<'_, [u8]> {
-        Cow::Borrowed(&self.bytes)
-    }
-
-    fn data_len(&self) -> usize {
-        self.bytes.len()
-    }
-}
-
 impl Tensor {
     fn singles(name: &'static str, shape: &[usize], values: impl Iterator<Item = f32>) -> Self {
         let bytes = values.flat_map(f32::to_le_bytes).collect();
@@ -72,6 +54,11 @@ impl Tensor {
     fn bytes(name: &'static str, shape: &[usize], bytes: Vec<u8>) -> Self {
         Self { name, dtype: Dtype::U8, shape: shape.into(), bytes }
     }
+
+    fn view(&self) -> TensorView<'_> {
+        TensorView::new(self.dtype, self.shape.clone(), &self.bytes)
+            .expect("arrays are as long as their shapes")
+    }
 }
 
 impl Cube {
@@ -86,8 +73,8 @@ impl Cube {
         let checksum = checksum(&header, content);
         tensors.push(Tensor::bytes(CHECKSUM, &[checksum.len()], checksum));
         let metadata = HashMap::from([(ENTRY.to_owned(), header)]);
-        let views = tensors.iter().map(|t| (t.name, t));
-        safetensors::serialize(views, Some(metadata)).expect("arrays are as long as their shapes")
+        let views = tensors.iter().map(|tensor| (tensor.name, tensor.view()));
+        safetensors::serialize(views, Some(metadata)).expect("names and metadata are plain text")
     }
 
     /// The file's header as JSON: contract, model and fit, without the curves.
