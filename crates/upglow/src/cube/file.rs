@@ -528,7 +528,7 @@ mod tests {
         let sum = checksum(&header, content);
         tensors.push(Tensor::bytes(CHECKSUM, &[sum.len()], sum));
         let metadata = HashMap::from([(ENTRY.to_owned(), header)]);
-        let views = tensors.iter().map(|t| (t.name, t));
+        let views = tensors.iter().map(|t| (t.name, t.view()));
         Cube::from_bytes(&safetensors::serialize(views, Some(metadata)).unwrap())
     }
 
