@@ -123,7 +123,7 @@ impl Contract {
 
 /// A light under which white is darker than this beside equally powerful light of the contract is no
 /// light to see by. Ultraviolet lamps are far below (365 nm: 6e-5), all lamps for rooms far above.
-const DARK: f64 = 0.01;
+pub(crate) const DARK: f64 = 0.01;
 
 /// How materials look under a light.
 #[derive(Clone, Debug, PartialEq)]

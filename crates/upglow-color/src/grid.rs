@@ -1,5 +1,7 @@
 //! Wavelength grids.
 
+use crate::rounding::whole;
+
 /// Equally spaced wavelengths, both ends included.
 ///
 /// An integral over a grid is the sum of the samples times [`Grid::step_nm`].
@@ -46,6 +48,15 @@ impl Grid {
         Ok(Self { first_nm, last_nm, step_nm })
     }
 
+    /// The grid of these ascending wavelengths, if they are one.
+    pub(crate) fn of(wavelengths_nm: &[f64]) -> Option<Self> {
+        let &[first, second, ..] = wavelengths_nm else { return None };
+        let last = wavelengths_nm[wavelengths_nm.len() - 1];
+        let [first, step, last] = [first, second - first, last].map(|nm| whole(nm).try_into().ok());
+        let grid = Self::try_new(first?, last?, step?).ok()?;
+        grid.wavelengths_nm().eq(wavelengths_nm.iter().copied()).then_some(grid)
+    }
+
     /// First wavelength, nm.
     pub const fn first_nm(self) -> u32 {
         self.first_nm
@@ -85,6 +96,13 @@ mod tests {
         let nm: Vec<f64> = Grid::FIT.wavelengths_nm().collect();
         assert_eq!((nm.len(), nm[0], nm[1], nm[106]), (107, 300.0, 305.0, 830.0));
         assert_eq!(Grid::FINE.len(), 531);
+    }
+
+    #[test]
+    fn wavelengths_without_a_common_step_are_no_grid() {
+        let of = |nm: &[f64]| Grid::of(nm);
+        assert_eq!(of(&[300.0, 310.0, 320.0]), Grid::try_new(300, 320, 10).ok());
+        assert_eq!([of(&[300.0, 310.0, 325.0]), of(&[300.5, 310.5]), of(&[300.0])], [None; 3]);
     }
 
     #[test]

@@ -8,6 +8,7 @@
 //! - color: [`Xyz`], [`LinearRgb`], [`Lab`], [`RgbSpace`], [`Adaptation`], [`Metric`]
 //! - limits: [`ColorSolid`], the colors that materials reach; [`ColorSolids::standing`], which kind of
 //!   material a color needs, and the nearest colors within reach
+//! - measured matrices of fluorescent samples: [`DonaldsonMatrix`], read from text
 //! - measured tables: [`MeasuredDye`] and the named sets of dyes
 //!
 //! Wavelengths are nm. Tristimulus values are relative: Y = 1 is the perfect diffuser.
@@ -31,6 +32,7 @@ mod ciede2000;
 mod color_solid;
 mod colorimetry;
 mod contract;
+mod donaldson_matrix;
 mod dyes;
 mod grid;
 mod illuminant;
@@ -69,6 +71,9 @@ pub use ciede2000::{ciede2000, ciede2000_residuals};
 pub use color_solid::{ColorSolid, Nearest};
 pub use colorimetry::Colorimetry;
 pub use contract::{Contract, ContractError, SeenUnder};
+pub use donaldson_matrix::{
+    BfcError, BispectralUnit, Diagonal, DonaldsonError, DonaldsonMatrix, MatrixCsvError, MatrixSums,
+};
 pub use dyes::MeasuredDye;
 pub use grid::{Grid, GridError};
 pub use illuminant::{Illuminant, IlluminantError, MissingUltraviolet};

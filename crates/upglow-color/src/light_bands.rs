@@ -1,5 +1,6 @@
 //! At which wavelengths a light is summed, and how much of it each stands for.
 
+use crate::donaldson_matrix::bands_nm;
 use crate::grid::Grid;
 use crate::illuminant::Illuminant;
 use crate::observer::Observer;
@@ -74,6 +75,34 @@ impl LightBands {
         }
         let sums = divided(&fine_amounts(light, observer, grid), &regular(grid));
         sums.iter().map(|[power, ..]| power / f64::from(grid.step_nm())).collect()
+    }
+
+    /// Power in the band around each of at least two ascending wavelengths, nm, in units of the light's
+    /// 1 nm samples. On a grid it is that of [`LightBands::power_on`], times the step. Elsewhere each
+    /// nanometer of the light is divided between the two wavelengths around it, or, where these lie nearer
+    /// than that, the light is sampled.
+    pub(crate) fn power_around(light: &Illuminant, observer: &Observer, axis: &[f64]) -> Vec<f64> {
+        if let Some(grid) = Grid::of(axis) {
+            let step_nm = f64::from(grid.step_nm());
+            return Self::power_on(light, observer, grid).iter().map(|p| p * step_nm).collect();
+        }
+        if axis.windows(2).any(|pair| pair[1] - pair[0] < f64::from(Grid::FINE.step_nm())) {
+            let bands = bands_nm(axis);
+            return axis.iter().zip(bands).map(|(nm, band)| light.power().at(*nm) * band).collect();
+        }
+        let mut sums = vec![0.0; axis.len()];
+        for (nm, power) in light.power().grid().wavelengths_nm().zip(light.power().values()) {
+            let above = axis.partition_point(|at| *at < nm);
+            if above == axis.len() || above == 0 && axis[0] > nm {
+                continue;
+            }
+            let below = above.saturating_sub(1);
+            let width = axis[above] - axis[below];
+            let share = if width > 0.0 { (nm - axis[below]) / width } else { 1.0 };
+            sums[below] += power * (1.0 - share);
+            sums[above] += power * share;
+        }
+        sums
     }
 
     fn integrated(fine: &[Amounts], observer: &Observer, grid: Grid) -> Self {

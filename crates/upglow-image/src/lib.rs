@@ -64,7 +64,6 @@ pub use picture::excerpt::Excerpt;
 pub use picture::interop::InteropSpace;
 pub use picture::stated::{Declared, DeclaredAlpha, Found, Interpretation, Missing, Word};
 pub use picture::{FORMATS, Picture, SUFFIXES};
-pub use spectral::channel::BispectralUnit;
 pub use spectral::error::FormError;
 pub use spectral::lint::findings::{Finding, Lint, Severity};
 pub use spectral::picture::{SpectralPicture, SpectralTexel};

@@ -2,14 +2,14 @@
 
 use upglow::{Bispectral, Cube, Interpolation, Model};
 use upglow_color::rounding::to_single;
-use upglow_color::{Grid, LinearRgb};
+use upglow_color::{BispectralUnit, Grid, LinearRgb};
 
 use super::attributes;
 use super::maker::{Filled, Maker};
 use super::radiance::{NAMES, RadianceMaker};
 use crate::exr::attribute::Attributes;
 use crate::exr::writer::Compression;
-use crate::spectral::channel::{BISPECTRAL_UNIT, BispectralUnit, SpectralChannel, rising_pairs};
+use crate::spectral::channel::{BISPECTRAL_UNIT, SpectralChannel, rising_pairs};
 
 /// Stores the blend of each texel: one channel per band, and one per pair of bands from a shorter to a
 /// longer wavelength.

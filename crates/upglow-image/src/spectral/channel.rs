@@ -9,7 +9,7 @@ use std::cmp::Ordering;
 use std::fmt;
 use std::str::FromStr;
 
-use upglow_color::Choice as _;
+use upglow_color::{BispectralUnit, Choice as _};
 
 use crate::exr::attribute::Attributes;
 
@@ -208,27 +208,9 @@ pub(crate) const EMISSIVE_UNITS: &str = "emissiveUnits";
 /// Attribute of upglow: the unit of re-radiation channels, which the layout does not specify.
 pub(crate) const BISPECTRAL_UNIT: &str = "upglow.bispectralUnit";
 
-/// The unit of re-radiation channels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum BispectralUnit {
-    /// Share of the incident power that leaves within the band of the outgoing wavelength.
-    PerBand,
-    /// Share of the incident power that leaves per nanometer at the outgoing wavelength.
-    PerNm,
-}
-
-upglow_color::choices!(
-    BispectralUnit,
-    "unit of re-radiation",
-    PerBand = "per band",
-    PerNm = "per nm",
-);
-
-impl BispectralUnit {
-    /// The unit that a file states, if it is a known one.
-    pub(crate) fn stated(attributes: &Attributes) -> Option<Self> {
-        Self::named(attributes.get(BISPECTRAL_UNIT)?.as_text()?).ok()
-    }
+/// The unit of re-radiation that a file states, if it is a known one.
+pub(crate) fn stated_unit(attributes: &Attributes) -> Option<BispectralUnit> {
+    BispectralUnit::named(attributes.get(BISPECTRAL_UNIT)?.as_text()?).ok()
 }
 
 #[cfg(test)]

@@ -1,7 +1,9 @@
 //! Errors of files of spectra and materials.
 
 use upglow::NodeError;
+use upglow_color::{BispectralUnit, DonaldsonError};
 
+use super::channel::BISPECTRAL_UNIT;
 use crate::exr::error::ExrError;
 
 /// Why a file does not contain, or cannot contain, spectra or materials.
@@ -42,4 +44,23 @@ pub enum FormError {
         /// The values that are valid.
         expected: String,
     },
+    /// The file has no channel of re-radiation.
+    #[error("no channel of re-radiation, expected names as T.400,000000nm.550,000000nm")]
+    NotBispectral,
+    /// The file does not state the unit of re-radiation, and none was given.
+    #[error(
+        "the unit of re-radiation is not stated, expected the attribute {BISPECTRAL_UNIT}, or a unit given"
+    )]
+    Unit,
+    /// The file states another unit than the one that was given.
+    #[error("re-radiation {stated}, expected {given}, the unit given")]
+    OtherUnit {
+        /// What the file states.
+        stated: BispectralUnit,
+        /// What was given.
+        given: BispectralUnit,
+    },
+    /// The channels are no matrix.
+    #[error(transparent)]
+    Matrix(#[from] DonaldsonError),
 }

@@ -6,14 +6,14 @@ mod samples;
 
 use std::path::Path;
 
-use upglow_color::Choice as _;
+use upglow_color::{BispectralUnit, Choice as _};
 
 use self::channels::{ListedChannel, SAME_NM, band, bands_nm, list, same, sorted_nm};
 use self::findings::{Lint, Rule};
 use self::samples::check_samples;
 use super::channel::{
-    BISPECTRAL_UNIT, BispectralUnit, EMISSIVE_UNITS, LAYOUT_VERSION, LAYOUT_VERSION_VALUE,
-    SpectralChannel, key_order, rising_pairs,
+    BISPECTRAL_UNIT, EMISSIVE_UNITS, LAYOUT_VERSION, LAYOUT_VERSION_VALUE, SpectralChannel,
+    key_order, rising_pairs, stated_unit,
 };
 use super::compact::CompactLayout;
 use crate::exr::error::ExrError;
@@ -95,7 +95,7 @@ fn check_attributes(reader: &ExrReader, lint: &mut Lint) {
     if lint.is_compact {
         check_compact(reader, lint);
     }
-    if lint.reradiation > 0 && BispectralUnit::stated(attributes).is_none() {
+    if lint.reradiation > 0 && stated_unit(attributes).is_none() {
         let found = text(BISPECTRAL_UNIT).map_or("absent".into(), quoted);
         let names = [BispectralUnit::PerBand, BispectralUnit::PerNm].map(|u| quoted(u.name()));
         let expected = format!("{}, which the layout itself leaves open", names.join(" or "));

@@ -3,7 +3,9 @@
 use std::ops::Range;
 use std::path::Path;
 
-use super::channel::{BispectralUnit, SpectralChannel, key_order, rising_pairs};
+use upglow_color::{BispectralUnit, DonaldsonMatrix};
+
+use super::channel::{SpectralChannel, key_order, rising_pairs, stated_unit};
 use super::compact::CompactLayout;
 use super::error::FormError;
 use crate::exr::reader::ExrReader;
@@ -76,7 +78,7 @@ impl SpectralPicture {
         if self.compact.is_some() {
             return Some(BispectralUnit::PerBand);
         }
-        BispectralUnit::stated(self.reader.attributes())
+        stated_unit(self.reader.attributes())
     }
 
     /// The texel in column `x` of row `y`, from the top left. Only its block is read.
@@ -105,6 +107,44 @@ impl SpectralPicture {
     fn read(&mut self, columns: Range<usize>, y: usize) -> Result<Vec<Vec<f32>>, FormError> {
         let numbers: Vec<usize> = (0..self.reader.channels().len()).collect();
         Ok(self.reader.read_region(columns, y..y.saturating_add(1), &numbers)?)
+    }
+
+    /// The re-radiation matrix of the texel in column `x` of row `y`, or the mean of all texels. `unit` is
+    /// that of re-radiation where the file does not state it.
+    ///
+    /// The diagonal is the reflectance alone: the layout has no channel for light that is re-emitted within
+    /// the band in which it arrived.
+    ///
+    /// # Errors
+    ///
+    /// [`FormError`] if there is no such texel, a block is damaged, or the channels are no matrix of a known
+    /// unit.
+    pub fn matrix(
+        &mut self,
+        at: Option<[usize; 2]>,
+        unit: Option<BispectralUnit>,
+    ) -> Result<DonaldsonMatrix, FormError> {
+        let unit = match (self.bispectral_unit(), unit) {
+            (Some(stated), Some(given)) if stated != given => {
+                return Err(FormError::OtherUnit { stated, given });
+            }
+            (Some(unit), _) | (None, Some(unit)) => unit,
+            (None, None) => return Err(FormError::Unit),
+        };
+        if let Some([x, y]) = at {
+            return MeanTexel::of(&self.at(x, y)?).matrix(unit);
+        }
+        let mut mean: Option<MeanTexel> = None;
+        for y in 0..self.size()[1] {
+            for texel in self.row(y, 1)? {
+                let texel = MeanTexel::of(&texel);
+                match &mut mean {
+                    Some(mean) => mean.add(&texel),
+                    None => mean = Some(texel),
+                }
+            }
+        }
+        mean.ok_or(FormError::NotBispectral)?.matrix(unit)
     }
 
     /// The texel with these values of the channels.
@@ -136,6 +176,60 @@ impl SpectralPicture {
         }
         texel
     }
+}
+
+/// Sums of the channels of texels, in double precision.
+struct MeanTexel {
+    count: f64,
+    reflectance: Vec<(f64, f64)>,
+    /// Incident and outgoing wavelength, nm, and the sum.
+    reradiation: Vec<(f64, f64, f64)>,
+}
+
+impl MeanTexel {
+    fn of(texel: &SpectralTexel) -> Self {
+        let reradiation = texel.reradiation.iter().map(|&(i, o, value)| (i, o, f64::from(value)));
+        Self {
+            count: 1.0,
+            reflectance: texel.reflectance.iter().map(|&(nm, r)| (nm, f64::from(r))).collect(),
+            reradiation: reradiation.collect(),
+        }
+    }
+
+    fn add(&mut self, other: &Self) {
+        self.count += other.count;
+        for (sum, value) in self.reflectance.iter_mut().zip(&other.reflectance) {
+            sum.1 += value.1;
+        }
+        for (sum, value) in self.reradiation.iter_mut().zip(&other.reradiation) {
+            sum.2 += value.2;
+        }
+    }
+
+    fn matrix(&self, unit: BispectralUnit) -> Result<DonaldsonMatrix, FormError> {
+        if self.reradiation.is_empty() {
+            return Err(FormError::NotBispectral);
+        }
+        let reflected = || self.reflectance.iter().map(|(nm, _)| *nm);
+        let incident = ascending(reflected().chain(self.reradiation.iter().map(|(i, ..)| *i)));
+        let outgoing = ascending(reflected().chain(self.reradiation.iter().map(|(_, o, _)| *o)));
+        let mut values = vec![vec![0.0; incident.len()]; outgoing.len()];
+        let index = |axis: &[f64], nm: f64| axis.partition_point(|at| *at < nm);
+        for &(in_nm, out_nm, sum) in &self.reradiation {
+            values[index(&outgoing, out_nm)][index(&incident, in_nm)] = sum / self.count;
+        }
+        let matrix = DonaldsonMatrix::try_new(incident, outgoing, values, unit)?;
+        let means = self.reflectance.iter().map(|(nm, sum)| (*nm, sum / self.count));
+        Ok(matrix.with_reflectance(&means.collect::<Vec<_>>())?)
+    }
+}
+
+/// The numbers in ascending order, each once.
+fn ascending(numbers: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut sorted: Vec<f64> = numbers.collect();
+    sorted.sort_by(f64::total_cmp);
+    sorted.dedup();
+    sorted
 }
 
 /// The compact layout that a file states, and the indices of its channels.

@@ -7,12 +7,12 @@ use upglow::{
     Accounting, Cube, DyeModel, DyeOptions, DyeSet, FilmModel, Fluorescence, Material, Mixture,
     Model, QuantumYield, Sigmoid,
 };
-use upglow_color::{Contract, Grid, Illuminant, RgbSpace};
+use upglow_color::{BispectralUnit, Contract, Grid, Illuminant, RgbSpace};
 use upglow_fit::{Preset, Unwatched, build_cube};
 
 use super::channel::{
-    BISPECTRAL_UNIT, BispectralUnit, EMISSIVE_UNITS, LAYOUT_VERSION, LAYOUT_VERSION_VALUE,
-    SpectralChannel, rising_pairs,
+    BISPECTRAL_UNIT, EMISSIVE_UNITS, LAYOUT_VERSION, LAYOUT_VERSION_VALUE, SpectralChannel,
+    rising_pairs,
 };
 use super::compact::{CompactForm, CompactLayout};
 use super::lint::findings::{Lint, Rule, Severity};
@@ -396,4 +396,50 @@ fn colour_science_integrates_a_baked_reflectance_to_our_color() {
     std::fs::write(&lights, light).unwrap();
     std::fs::write(&list, colors).unwrap();
     agrees(&python, "--colors", &[&path, &lights, &list]);
+}
+
+#[test]
+fn a_full_and_a_compact_file_hold_the_same_matrix() {
+    // Both are rounded to single precision, sums of six texels.
+    const SINGLE: f64 = 1e-6;
+    let bands = Grid::try_new(380, 700, 20).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    for model in models() {
+        let [full, compact] = full_and_compact(folder.path(), bands, &model)
+            .map(|path| SpectralPicture::open(path).unwrap());
+        let [mut full, mut compact] = [full, compact];
+        for at in [Some([0, 0]), Some([2, 1]), None] {
+            let [one, two] =
+                [&mut full, &mut compact].map(|picture| picture.matrix(at, None).unwrap());
+            assert!(one.incident_nm().iter().copied().eq(bands.wavelengths_nm()));
+            let pairs = one.factors().iter().flatten().zip(two.factors().iter().flatten());
+            assert!(pairs.into_iter().all(|(a, b)| (a - b).abs() < SINGLE));
+        }
+        let texels = (0..6).map(|t| full.at(t % 3, t / 3).unwrap().reradiation[5].2);
+        let mean = texels.map(f64::from).sum::<f64>() / 6.0;
+        let found = full.matrix(None, None).unwrap().factors()[6][0];
+        assert!((found - mean).abs() < SINGLE && mean > 0.0, "{found} {mean}");
+        let refused = full.matrix(None, Some(BispectralUnit::PerNm)).unwrap_err().to_string();
+        assert_eq!(refused, "re-radiation per band, expected per nm, the unit given");
+    }
+}
+
+#[test]
+fn a_matrix_without_a_unit_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("none.exr");
+    let names = names_of(Grid::try_new(400, 700, 100).unwrap());
+    let texels = vec![vec![0.01; names.len()]; 6];
+    write(&path, &names, Attributes::new(), &texels);
+    let mut picture = SpectralPicture::open(&path).unwrap();
+    let refused = picture.matrix(None, None).unwrap_err().to_string();
+    let expected = "the unit of re-radiation is not stated, expected the attribute \
+                    upglow.bispectralUnit, or a unit given";
+    assert_eq!(refused, expected);
+    let found = picture.matrix(None, Some(BispectralUnit::PerNm)).unwrap();
+    // Single precision of the file.
+    assert!(
+        (found.factors()[1][0] - 1.0).abs() < 1e-6 && (found.factors()[1][1] - 0.01).abs() < 1e-6
+    );
+    assert_eq!(found.diagonal(), upglow_color::Diagonal::Reflected);
 }

@@ -1,11 +1,13 @@
 //! Checks the samples of a spectral file.
 
+use upglow_color::BispectralUnit;
+
 use super::channels::{ListedChannel, band, bands_nm};
 use super::findings::{Lint, Rule};
 use crate::exr::error::ExrError;
 use crate::exr::header::Sample;
 use crate::exr::reader::ExrReader;
-use crate::spectral::channel::{BispectralUnit, SpectralChannel};
+use crate::spectral::channel::{SpectralChannel, stated_unit};
 
 /// Tolerance for sums of half-precision samples, which are rounded by 2⁻¹² each.
 const HALF_SLACK: f64 = 5e-4;
@@ -98,7 +100,7 @@ struct EnergySums {
 impl EnergySums {
     fn new(reader: &ExrReader, channels: &[ListedChannel]) -> Self {
         let bands = bands_nm(channels);
-        let unit = BispectralUnit::stated(reader.attributes());
+        let unit = stated_unit(reader.attributes());
         let mut terms = vec![Vec::new(); bands.len()];
         for (plane, found) in channels.iter().enumerate() {
             let (in_nm, weight) = match (found.channel, unit) {
