@@ -206,7 +206,7 @@ mod tests {
         let irregular = vec![300.0, 330.0, 371.0, 400.0, 412.5, 480.0, 555.0, 610.0, 700.0, 760.0];
         for nm in [axis(300.0, 780.0, 10.0), axis(350.0, 750.0, 5.0), irregular] {
             let gray = random(nm.clone(), nm).with_factors(|o, i| if o == i { 0.25 } else { 0.0 });
-            for name in Illuminant::NAMES {
+            for name in Illuminant::names() {
                 let light = Illuminant::named(name).unwrap();
                 let sums = MatrixSums::new(&gray, &light, &Observer::default()).unwrap();
                 let (color, white) = (sums.color(&gray), sums.white());

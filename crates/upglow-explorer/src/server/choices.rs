@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use serde_json::{Value, json};
 use upglow::{DyeSet, Model};
-use upglow_color::{Choice as _, Illuminant, MeasuredDye, Observer, RgbSpace};
+use upglow_color::{BispectralUnit, Choice as _, Illuminant, MeasuredDye, Observer, RgbSpace};
 use upglow_fit::{FitOptions, Preset};
-use upglow_image::{BispectralUnit, DeclaredAlpha, Encoding};
+use upglow_image::{DeclaredAlpha, Encoding};
 
 /// Encodings that pictures have without saying so.
 const ENCODINGS: [Encoding; 3] = [Encoding::Linear, Encoding::Srgb, Encoding::Bt709];

@@ -11,8 +11,8 @@ use axum::routing::{get, post};
 use serde_json::json;
 use tempfile::TempPath;
 use tokio::sync::OwnedSemaphorePermit;
-use upglow_color::{Choice as _, Grid, RgbSpace};
-use upglow_image::{BispectralUnit, Declared, DeclaredAlpha, Encoding, Excerpt};
+use upglow_color::{BispectralUnit, Choice as _, Grid, RgbSpace};
+use upglow_image::{Declared, DeclaredAlpha, Encoding, Excerpt};
 
 use super::answer::{Refusal, binary, json as answer, work};
 use super::body::{self, Limit};

@@ -3,8 +3,8 @@
 use serde::Serialize;
 use tempfile::TempPath;
 use upglow_color::rounding::to_single;
-use upglow_color::{Choice as _, Colorimetry, Grid, Observer, Xyz};
-use upglow_image::{BispectralUnit, Excerpt, FormError, SpectralPicture, SpectralTexel};
+use upglow_color::{BispectralUnit, Choice as _, Colorimetry, Grid, Observer, Xyz};
+use upglow_image::{Excerpt, FormError, SpectralPicture, SpectralTexel};
 
 use super::answer::Refusal;
 use crate::sampled::Sampled;
