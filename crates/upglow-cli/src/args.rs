@@ -3,6 +3,7 @@
 mod build;
 #[cfg(feature = "explore")]
 mod explore;
+mod fit_matrix;
 mod pictures;
 mod values;
 
@@ -20,6 +21,7 @@ pub(crate) use build::{
 };
 #[cfg(feature = "explore")]
 pub(crate) use explore::{BuildWords, ExploreArgs};
+pub(crate) use fit_matrix::FitMatrixArgs;
 pub(crate) use pictures::{
     BakeArgs, BakeForm, BakeFormat, CheckArgs, ExamplesArgs, LintArgs, ReadArgs, SampleName,
 };
@@ -47,6 +49,8 @@ pub(crate) enum Command {
     Verify(VerifyArgs),
     /// Show the material of one color
     Color(ColorArgs),
+    /// Fit a material to a measured re-radiation (Donaldson) matrix
+    FitMatrix(FitMatrixArgs),
     /// Convert a cube for other programs: CSV, coefficient table or shader source, or a page to explore it
     Export(ExportArgs),
     /// Convert pictures to files of materials, spectra or colors under a light

@@ -8,7 +8,7 @@ use upglow::{
     AnalyticModel, DyeModel, DyeOptions, DyeSet, DyeSetError, FilmModel, Model, ModelError,
     QuantumYield,
 };
-use upglow_color::{Choice, Contract, Illuminant, LinearRgb, Observer};
+use upglow_color::{Choice, Contract, Illuminant, LinearRgb, MeasuredDye, Observer};
 use upglow_fit::{FitOptions, FitOptionsError, Fitter, GivenOptions, Preset};
 use upglow_terminal::Failure;
 
@@ -244,6 +244,11 @@ fn named_or_folder(text: &str, normalize: bool) -> Result<DyeSet, Failure> {
         Ok(_) if normalize => Err(not_normalized(&format!("with --dyes {text}"))),
         named => named.map_err(|error| Failure::option("--dyes", error)),
     }
+}
+
+/// The dyes of a set or folder, given with `--dyes` of `fit-matrix`.
+pub(crate) fn matrix_dyes(text: &str) -> Result<Vec<MeasuredDye>, Failure> {
+    named_or_folder(text, false).map(|set| set.dyes().to_vec())
 }
 
 /// Only the curves of files may be in other units than fractions.

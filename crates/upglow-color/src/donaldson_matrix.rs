@@ -205,19 +205,22 @@ impl DonaldsonMatrix {
         Ok(self)
     }
 
-    /// A matrix on the same axes.
+    /// Another matrix on the same axes, from the share of each outgoing and incident band, by their indices.
     ///
     /// # Panics
     ///
-    /// If a value is not finite.
-    pub fn with_factors(&self, factor: impl Fn(f64, f64) -> f64) -> Self {
-        let row = |&o: &f64| self.incident_nm.iter().map(|&i| factor(o, i)).collect::<Vec<f64>>();
-        let factors: Vec<Vec<f64>> = self.outgoing_nm.iter().map(row).collect();
-        assert!(
-            factors.iter().flatten().all(|v| v.is_finite()),
-            "factors of a material are finite"
-        );
+    /// If a share is not finite.
+    pub fn with_factors(&self, factor: impl Fn(usize, usize) -> f64) -> Self {
+        let row = |o| (0..self.incident_nm.len()).map(|i| factor(o, i)).collect::<Vec<f64>>();
+        let factors: Vec<Vec<f64>> = (0..self.outgoing_nm.len()).map(row).collect();
+        assert!(factors.iter().flatten().all(|v| v.is_finite()), "expected finite shares");
         Self { factors, ..self.clone() }
+    }
+
+    /// The matrix with zeros where a measurement holds only noise, below the diagonal.
+    pub fn without_noise(&self) -> Self {
+        let bands = Bands::of(self);
+        self.with_factors(|o, i| if bands.is_noise(o, i) { 0.0 } else { self.factors[o][i] })
     }
 
     /// Where light arrives, nm; ascending.
@@ -259,16 +262,11 @@ impl DonaldsonMatrix {
     /// The root of the mean square below the diagonal, where a measurement holds only noise, and the
     /// greatest size there, both per band; `None` if nothing was measured there.
     pub fn noise(&self) -> Option<[f64; 2]> {
-        let [incident, outgoing] =
-            [&self.incident_nm, &self.outgoing_nm].map(|axis| bands_nm(axis));
+        let bands = Bands::of(self);
         let mut found = Vec::new();
         for (o, row) in self.factors.iter().enumerate() {
-            for (i, value) in row.iter().enumerate() {
-                let band_nm = outgoing[o].max(incident[i]);
-                if self.outgoing_nm[o] < self.incident_nm[i] - NOISE_BANDS * band_nm {
-                    found.push(*value);
-                }
-            }
+            let below = row.iter().enumerate().filter(|(i, _)| bands.is_noise(o, *i));
+            found.extend(below.map(|(_, value)| *value));
         }
         let mean_square = found.iter().map(|v| v * v).sum::<f64>() / found.len() as f64;
         let greatest = found.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
@@ -303,6 +301,29 @@ impl DonaldsonMatrix {
     pub fn leaving(&self, arriving: &[f64]) -> Vec<f64> {
         let of = |row: &Vec<f64>| row.iter().zip(arriving).map(|(factor, e)| factor * e).sum();
         self.factors.iter().map(of).collect()
+    }
+}
+
+/// The axes of a matrix with the widths of their bands.
+struct Bands<'m> {
+    matrix: &'m DonaldsonMatrix,
+    incident: Vec<f64>,
+    outgoing: Vec<f64>,
+}
+
+impl<'m> Bands<'m> {
+    fn of(matrix: &'m DonaldsonMatrix) -> Self {
+        let [incident, outgoing] =
+            [&matrix.incident_nm, &matrix.outgoing_nm].map(|nm| bands_nm(nm));
+        Self { matrix, incident, outgoing }
+    }
+
+    /// Whether light that arrived in a band can only by noise leave in another.
+    fn is_noise(&self, outgoing: usize, incident: usize) -> bool {
+        let band_nm = self.outgoing[outgoing].max(self.incident[incident]);
+        let (out_nm, in_nm) =
+            (self.matrix.outgoing_nm[outgoing], self.matrix.incident_nm[incident]);
+        out_nm < in_nm - NOISE_BANDS * band_nm
     }
 }
 
@@ -377,6 +398,7 @@ mod tests {
         assert!((typical - 0.002).abs() < 1e-15 && (greatest - 0.002).abs() < 1e-15);
         let found = matrix(|o, i| if o <= i - 20.0 { 0.0 } else { 0.5 });
         assert_eq!(found.noise(), Some([0.0; 2]));
+        assert_eq!(found.without_noise(), found);
         let blue = DonaldsonMatrix::try_new(
             tens(300, 400),
             tens(390, 700),

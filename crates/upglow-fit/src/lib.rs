@@ -3,6 +3,7 @@
 //! - one color: [`Fitter`], [`Fit`]
 //! - which kinds of material millions of colors need: [`StandingTable`]
 //! - one material per texel: [`Polisher`]
+//! - a measured re-radiation matrix: [`fit_matrix`]
 //! - a cube: [`build_cube`], [`Preset`], [`CubeSummary`], [`MaterialKind`], [`verify`]
 //!
 //! # Examples
@@ -25,6 +26,7 @@
 mod coefficients;
 mod cube;
 mod fit;
+mod fit_matrix;
 mod fitter;
 mod kind;
 mod options;
@@ -49,6 +51,10 @@ const _: () = {
 pub use coefficients::{fit_coefficients, round_trip};
 pub use cube::{BuildError, CubeSummary, Spread, build_cube};
 pub use fit::Fit;
+pub use fit_matrix::goal::MatrixDifference;
+pub use fit_matrix::{
+    MatrixDyes, MatrixFit, MatrixFitError, MatrixFitOptions, MatrixReflectance, fit_matrix,
+};
 pub use fitter::{ColorError, Fitter};
 pub use kind::{BlendKinds, KindCounts, MaterialKind};
 pub use options::{FitOptions, FitOptionsError, GivenOptions, Method};

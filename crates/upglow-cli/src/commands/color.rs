@@ -19,9 +19,8 @@ use crate::{files, plan};
 fn lights(args: &ColorArgs) -> Result<Vec<Illuminant>, Failure> {
     let given = plan::lights("--light", &args.lights, &args.light)?;
     if given.is_empty() {
-        let lamp = Illuminant::line(&format!("{LAMP_PEAK_NM} nm lamp"), LAMP_PEAK_NM, LAMP_FWHM_NM);
         let standard = LIGHTS.iter().filter_map(|name| Illuminant::named(name).ok());
-        return Ok(standard.chain(lamp.ok()).collect());
+        return Ok(standard.chain([ultraviolet_lamp()]).collect());
     }
     Ok(given)
 }
@@ -32,6 +31,12 @@ const LIGHTS: [&str; 3] = ["D65", "A", "E"];
 /// An ultraviolet lamp as used for minerals and banknotes: only fluorescence is visible under it.
 const LAMP_PEAK_NM: f64 = 365.0;
 const LAMP_FWHM_NM: f64 = 12.0;
+
+/// That lamp.
+pub(super) fn ultraviolet_lamp() -> Illuminant {
+    let name = format!("{LAMP_PEAK_NM} nm lamp");
+    Illuminant::line(&name, LAMP_PEAK_NM, LAMP_FWHM_NM).expect("its power reaches beyond 360 nm")
+}
 
 pub(crate) fn run(args: &ColorArgs, console: &Console) -> Result<(), Failure> {
     let rgb = plan::color(args)?;

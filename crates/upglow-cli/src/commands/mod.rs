@@ -9,6 +9,7 @@ mod examples;
 #[cfg(feature = "explore")]
 mod explore;
 mod export;
+mod fit_matrix;
 mod inspect;
 mod inspect_table;
 mod lint;
@@ -27,6 +28,7 @@ pub(crate) fn run(Args { command, console }: Args) -> Result<(), Failure> {
         Command::Inspect(args) => inspect::run(args, &console),
         Command::Verify(args) => verify::run(&args, &console),
         Command::Color(args) => color::run(&args, &console),
+        Command::FitMatrix(args) => fit_matrix::run(&args, &console),
         Command::Export(args) => export::run(&args, &console),
         Command::Bake(args) => bake::run(&args, &console),
         Command::Check(args) => check::run(&args, &console),

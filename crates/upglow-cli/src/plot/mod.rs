@@ -1,5 +1,6 @@
-//! Figures of a material's curves.
+//! Figures of a material's curves, and of matrices.
 
+pub(crate) mod matrix;
 pub(crate) mod svg;
 
 use upglow::{Bispectral, Material, Mixture, Model, Sigmoid};

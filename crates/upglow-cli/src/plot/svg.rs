@@ -29,9 +29,9 @@ const CAPTION_LETTERS: usize = 31;
 const CAPTION_LINES: usize = 12;
 const CAPTION_STEP: f64 = 18.0;
 
-const FONT: &str = "'DejaVu Sans', Verdana, Arial, sans-serif";
-const INK: &str = "#222222";
-const FAINT: &str = "#dddddd";
+pub(super) const FONT: &str = "'DejaVu Sans', Verdana, Arial, sans-serif";
+pub(super) const INK: &str = "#222222";
+pub(super) const FAINT: &str = "#dddddd";
 
 /// A curve's name, color, dashes and points. Color-blind readers can tell the colors apart, and in
 /// print without color the dashes.
@@ -113,15 +113,15 @@ fn points(curve: impl Iterator<Item = (f64, f64)>) -> String {
     upglow_svg::points(curve.map(|(nm, value)| [x_of(nm), y_of(value)]), hundredths)
 }
 
-fn hundredths(value: f64) -> String {
+pub(super) fn hundredths(value: f64) -> String {
     format!("{value:.2}")
 }
 
-fn at(name: &'static str, x: impl Display, y: impl Display) -> Element {
+pub(super) fn at(name: &'static str, x: impl Display, y: impl Display) -> Element {
     Element::new(name).with("x", x).with("y", y)
 }
 
-fn line(
+pub(super) fn line(
     x1: impl Display,
     y1: impl Display,
     x2: impl Display,
@@ -179,7 +179,7 @@ fn axes() -> Vec<String> {
     elements
 }
 
-fn outlined(rect: Element, [width, height]: [f64; 2], color: &str) -> String {
+pub(super) fn outlined(rect: Element, [width, height]: [f64; 2], color: &str) -> String {
     rect.with("width", width)
         .with("height", height)
         .with("fill", "none")
@@ -214,7 +214,7 @@ fn caption(figure: &Figure<'_>) -> Vec<String> {
     (0..).zip(lines).map(text).collect()
 }
 
-fn shortened(line: &str) -> String {
+pub(super) fn shortened(line: &str) -> String {
     if line.chars().count() <= CAPTION_LETTERS {
         return line.to_owned();
     }

@@ -1,10 +1,12 @@
 //! A light and an observer on the axes of a matrix.
 
 use super::DonaldsonMatrix;
+use crate::ciede2000::ciede2000_residuals;
 use crate::contract::{Contract, ContractError, DARK};
 use crate::illuminant::Illuminant;
-use crate::lab::{Lab, lab_from_xyz};
+use crate::lab::{Lab, lab_from_xyz, lab_jacobian};
 use crate::light_bands::LightBands;
+use crate::matrix::Matrix3;
 use crate::observer::Observer;
 use crate::values::Xyz;
 
@@ -132,6 +134,13 @@ impl MatrixSums {
         lab_from_xyz(xyz, self.white)
     }
 
+    /// Derivatives by X, Y, Z, at a color, of three numbers whose squares add up to the square of CIEDE2000
+    /// from that color.
+    pub fn difference_by_xyz(&self, color: Xyz) -> Matrix3 {
+        let (lab, lab_by_xyz) = lab_jacobian(color, self.white);
+        ciede2000_residuals(lab, lab).1 * lab_by_xyz
+    }
+
     /// The radiance factor of a matrix at each outgoing wavelength: what leaves there over what would leave
     /// of the perfect diffuser; `None` where no light arrives.
     #[must_use]
@@ -231,6 +240,23 @@ mod tests {
                 let error = (found.0[k] / expected.0[k] - 1.0).abs();
                 assert!(error < QUADRATURE, "{name} {found:?} {expected:?}");
             }
+        }
+    }
+
+    #[test]
+    fn small_differences_are_linear_in_xyz() {
+        // Curvature over the step.
+        const CURVATURE: f64 = 1e-3;
+        let gray = random(axis(300.0, 780.0, 10.0), axis(380.0, 780.0, 10.0));
+        let sums = MatrixSums::new(&gray, &Illuminant::default(), &Observer::default()).unwrap();
+        let white = sums.white();
+        for color in [Xyz([0.3, 0.4, 0.1]), 0.5 * white, Xyz([0.2, 0.01, -0.001])] {
+            let near = color + Xyz([1e-6, -2e-6, 1.5e-6]);
+            let by_xyz = sums.difference_by_xyz(color) * (near - color).0;
+            let norm = by_xyz.iter().map(|v| v * v).sum::<f64>().sqrt();
+            let [one, two] = [color, near].map(|xyz| sums.lab_from_xyz(xyz));
+            let expected = crate::ciede2000(one, two);
+            assert!((norm / expected - 1.0).abs() < CURVATURE, "{color:?} {norm} {expected}");
         }
     }
 

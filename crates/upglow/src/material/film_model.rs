@@ -76,6 +76,15 @@ impl FilmModel {
         density.absorbed_per_density()
     }
 
+    /// Where two dyes of these optical densities have these absorptions: the share of light that passes, what
+    /// each dye absorbs, and the derivatives of that by each density, `[dye][density]`.
+    pub fn absorbed_by_two(
+        densities: [f64; 2],
+        absorptions: [f64; 2],
+    ) -> (f64, [f64; 2], [[f64; 2]; 2]) {
+        Film { densities }.with_derivatives(absorptions)
+    }
+
     /// [`FilmModel::proposed`], to draw from.
     pub(crate) fn proposals(&self, dye: usize) -> &[Distribution; LEVELS.len()] {
         &self.proposals[dye]

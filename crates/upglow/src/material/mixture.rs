@@ -1,6 +1,6 @@
 //! Weighted mixtures of materials: what a look-up returns, ready to evaluate.
 
-use upglow_color::{Grid, Illuminant, MissingUltraviolet, Xyz};
+use upglow_color::{Diagonal, DonaldsonMatrix, Grid, Illuminant, MissingUltraviolet, Xyz};
 
 use crate::bispectral::{Bispectral, Sample};
 use crate::material::Material;
@@ -72,6 +72,33 @@ impl<'m> Mixture<'m> {
             matrix[i][i] += self.reflectance(nm);
         }
         matrix
+    }
+
+    /// The mixture as a measured matrix on the axes of `measured`: at each pair of wavelengths what
+    /// leaves per nm times the width of the outgoing band, and the reflectance on the diagonal, with what is
+    /// re-emitted within the band if `measured` holds both together.
+    pub fn matrix_like(&self, measured: &DonaldsonMatrix) -> DonaldsonMatrix {
+        let lobes: Vec<(Vec<f64>, Vec<f64>)> = self
+            .lobes()
+            .map(|(weight, lobe)| {
+                let emitted = measured.outgoing_nm().iter().map(|nm| lobe.emission(*nm));
+                let per_band =
+                    emitted.zip(measured.outgoing_bands_nm()).map(|(e, width)| e * width);
+                let returned = measured.incident_nm().iter().map(|nm| weight * lobe.returned(*nm));
+                (per_band.collect(), returned.collect())
+            })
+            .collect();
+        let reflected: Vec<f64> =
+            measured.incident_nm().iter().map(|nm| self.reflectance(*nm)).collect();
+        measured.with_factors(|o, i| {
+            let emitted =
+                || lobes.iter().map(|(per_band, back)| per_band[o] * back[i]).sum::<f64>();
+            match measured.outgoing_nm()[o] == measured.incident_nm()[i] {
+                true if measured.diagonal() == Diagonal::Reflected => reflected[i],
+                true => reflected[i] + emitted(),
+                false => emitted(),
+            }
+        })
     }
 
     /// The color of the mixture under the light of `sums`, which must be of the same model.
