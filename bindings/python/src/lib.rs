@@ -17,6 +17,7 @@ mod figures;
 mod fit;
 mod illuminant;
 mod materials;
+mod matrix;
 mod model;
 mod nodes;
 mod observer;
@@ -46,6 +47,7 @@ mod _upglow {
         fit::{build, fit},
         illuminant::Illuminant,
         materials::{corners, polish},
+        matrix::{DonaldsonMatrix, MatrixFit, fit_matrix},
         model::{DyeSet, Model},
         observer::Observer,
         questions::answer,

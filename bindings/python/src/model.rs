@@ -18,6 +18,13 @@ use crate::word::Word;
 #[derive(Debug)]
 pub(crate) struct DyeSet(upglow::DyeSet);
 
+impl DyeSet {
+    /// The dyes, in ring order.
+    pub(crate) fn dyes_of_set(&self) -> Vec<MeasuredDye> {
+        self.0.dyes().to_vec()
+    }
+}
+
 /// A dye as Python gives it: name, wavelengths (nm), absorption, emission, quantum yield.
 type Sampled = (String, Vec<f64>, Vec<f64>, Vec<f64>, Option<f64>);
 

@@ -31,6 +31,7 @@ from ._contract import Contract
 from ._cube import Cube, CubeCheck, CubeSummary, Samples, build
 from ._illuminant import Illuminant
 from ._materials import Corners, Materials
+from ._matrix import DonaldsonMatrix, MatrixDifference, MatrixFit, fit_matrix
 from ._models import Analytic, Dye, Dyes, Film, Reflectance
 from ._observer import Observer
 from ._standing import Kind, Standing, standing
@@ -48,12 +49,15 @@ __all__ = [
     "Cube",
     "CubeCheck",
     "CubeSummary",
+    "DonaldsonMatrix",
     "Dye",
     "Dyes",
     "Film",
     "Illuminant",
     "Kind",
     "Materials",
+    "MatrixDifference",
+    "MatrixFit",
     "Observer",
     "Reflectance",
     "Samples",
@@ -62,5 +66,6 @@ __all__ = [
     "__version__",
     "build",
     "figures",
+    "fit_matrix",
     "standing",
 ]

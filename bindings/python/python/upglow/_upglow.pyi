@@ -89,6 +89,43 @@ class Observer:
     matching: Final[_Doubles]
 
 @final
+class DonaldsonMatrix:
+    @staticmethod
+    def from_samples(
+        incident_nm: _Doubles,
+        outgoing_nm: _Doubles,
+        values: _Doubles,
+        unit: str,
+        reflectance: list[tuple[float, float]] | None = None,
+    ) -> DonaldsonMatrix: ...
+    @staticmethod
+    def from_bfc(text: str) -> DonaldsonMatrix: ...
+    @staticmethod
+    def from_csv(text: str) -> DonaldsonMatrix: ...
+    def color(self, light: Illuminant, observer: Observer) -> list[float]: ...
+    incident_nm: Final[_Doubles]
+    outgoing_nm: Final[_Doubles]
+    per_band: Final[_Doubles]
+    diagonal: Final[str]
+    noise: Final[list[float] | None]
+
+@final
+class MatrixFit:
+    matrix: Final[DonaldsonMatrix]
+    def cube(self) -> Cube: ...
+    def difference(
+        self, measured: DonaldsonMatrix, light: Illuminant
+    ) -> tuple[list[float], list[float], float, float, bool]: ...
+
+def fit_matrix(
+    measured: DonaldsonMatrix,
+    dyes: DyeSet | None,
+    all_dyes: bool,
+    count: int | None,
+    reflectance: str | None,
+) -> MatrixFit: ...
+
+@final
 class Contract:
     def __new__(
         cls,

@@ -30,6 +30,9 @@ pub struct MatrixSums {
     is_adapted: bool,
 }
 
+/// A chroma that nobody sees, and with which the direction of a hue is exact to ten digits.
+const NEUTRAL: f64 = 1e-4;
+
 impl MatrixSums {
     /// The sums for the axes of `matrix`, scaled so that the perfect diffuser has Y = 1.
     ///
@@ -138,6 +141,8 @@ impl MatrixSums {
     /// from that color.
     pub fn difference_by_xyz(&self, color: Xyz) -> Matrix3 {
         let (lab, lab_by_xyz) = lab_jacobian(color, self.white);
+        // A gray has no hue, in whose direction to differ: beside it the numbers are the same.
+        let lab = Lab { a: if lab.chroma() < NEUTRAL { NEUTRAL } else { lab.a }, ..lab };
         ciede2000_residuals(lab, lab).1 * lab_by_xyz
     }
 
