@@ -34,7 +34,7 @@ pub enum BfcError {
         /// Incident wavelengths.
         expected: usize,
     },
-    /// A cell is no number.
+    /// A cell does not hold a number.
     #[error("line {line} holds {found:?}, expected a number")]
     Number {
         /// Line number.

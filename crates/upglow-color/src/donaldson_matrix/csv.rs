@@ -27,7 +27,7 @@ pub enum MatrixCsvError {
         /// Cells in the first line.
         expected: usize,
     },
-    /// A cell is no number.
+    /// A cell does not hold a number.
     #[error("line {line}, cell {cell}: {found:?}, expected a number")]
     Number {
         /// Line number.
