@@ -4,6 +4,7 @@ use crate::adaptation::Adaptation;
 use crate::colorimetry::{Colorimetry, LEAST_SHARE};
 use crate::grid::Grid;
 use crate::illuminant::Illuminant;
+use crate::matrix::Matrix3;
 use crate::observer::Observer;
 use crate::rgb_space::RgbSpace;
 use crate::values::Xyz;
@@ -136,6 +137,14 @@ pub struct SeenUnder {
     pub white: Xyz,
     /// Whether this is the white of the light itself.
     pub is_adapted: bool,
+}
+
+impl SeenUnder {
+    /// The matrix from colors under this light to the colors that look like them under the light of `own`: both
+    /// relative to what the observer sees as white, by Bradford's adaptation.
+    pub fn own_from_seen(&self, own: &Colorimetry) -> Matrix3 {
+        Adaptation::Bradford.target_from_source(self.white, own.white())
+    }
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ use crate::values::Xyz;
 
 /// CIELAB coordinates relative to a white.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[must_use]
 pub struct Lab {
     /// Lightness; 0 is black, 100 the white.

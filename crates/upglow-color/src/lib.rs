@@ -52,6 +52,7 @@ mod srgb_curve;
 mod standing;
 mod tables;
 mod values;
+mod whiteness;
 
 /// Threads share these.
 const _: () = {
@@ -88,3 +89,4 @@ pub use spectrum::{Spectrum, SpectrumCsvError, SpectrumError, read_columns};
 pub use srgb_curve::{srgb_decoded, srgb_encoded};
 pub use standing::{ColorSolids, Standing, StandingKind};
 pub use values::{LinearRgb, Xyz};
+pub use whiteness::{Whiteness, WhitenessScale};

@@ -4,6 +4,7 @@
 //! - which kinds of material millions of colors need: [`StandingTable`]
 //! - one material per texel: [`Polisher`]
 //! - a measured re-radiation matrix: [`fit_matrix`]
+//! - how many colors look under other lights: [`Relighting`]
 //! - a cube: [`build_cube`], [`Preset`], [`CubeSummary`], [`MaterialKind`], [`verify`]
 //!
 //! # Examples
@@ -34,6 +35,7 @@ mod polish;
 mod preset;
 mod problem;
 mod progress;
+mod relight;
 mod seams;
 mod search;
 mod standing_table;
@@ -61,6 +63,7 @@ pub use options::{FitOptions, FitOptionsError, GivenOptions, Method};
 pub use polish::Polisher;
 pub use preset::Preset;
 pub use progress::{Progress, Unwatched, Watch};
+pub use relight::{Appearance, Relighting, SeenBy, View};
 pub use seams::{Seam, seams, ultraviolet_lamp};
 pub use standing_table::{Estimate, StandingTable};
 pub use verify::{

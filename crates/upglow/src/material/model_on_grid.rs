@@ -202,13 +202,18 @@ impl ModelOnGrid {
 
     /// The color of one material.
     pub fn color(&self, material: Material) -> Xyz {
+        self.color_and_emission(material).0
+    }
+
+    /// The color of one material, and what of it is light that fluorescence emits.
+    pub fn color_and_emission(&self, material: Material) -> (Xyz, Xyz) {
         let mut passed = vec![1.0; self.wavelengths_nm.len()];
         let emitted = self.emitted(material.fluorescence, &mut passed);
         let reflected =
             self.wavelengths_nm.iter().zip(&passed).map(|(&nm, t)| t * material.reflectance.at(nm));
         let mut color = self.colorimetry.xyz_from_reflectance(reflected).0;
         (0..3).for_each(|k| color[k] += emitted[k]);
-        Xyz(color)
+        (Xyz(color), Xyz(emitted))
     }
 
     /// The color that fluorescence emits; what it absorbs is taken from `passed`.

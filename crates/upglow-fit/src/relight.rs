@@ -1,0 +1,254 @@
+//! How the materials of many colors look under lights, to observers.
+
+use rayon::prelude::*;
+use upglow::{Cube, LookupError, Material, Mixture, ModelOnGrid};
+use upglow_color::{
+    Colorimetry, Contract, ContractError, Grid, Illuminant, Lab, LinearRgb, MissingUltraviolet,
+    Observer, SeenUnder, Whiteness, WhitenessScale, Xyz, ciede2000,
+};
+
+/// Materials of colors, to be seen under lights.
+///
+/// Colors between the nodes of a cube are blends of the materials around them. Each material is computed once
+/// per light, however many colors it takes part in.
+#[must_use]
+#[derive(Clone, Debug)]
+pub struct Relighting<'c> {
+    cube: &'c Cube,
+    /// Those that take part in a color.
+    materials: Vec<Material>,
+    /// For each color four of the materials and their weights.
+    blends: Vec<[(usize, f64); 4]>,
+}
+
+/// What takes no part in a blend.
+const NOTHING: (usize, f64) = (0, 0.0);
+
+impl<'c> Relighting<'c> {
+    /// The blends that the cube returns for colors.
+    ///
+    /// # Errors
+    ///
+    /// [`LookupError`] if a component of a color is not a number in 0..=1.
+    pub fn of_colors(cube: &'c Cube, colors: &[LinearRgb]) -> Result<Self, LookupError> {
+        let around = colors.iter().map(|&rgb| cube.corners(rgb));
+        let mut blends = around.collect::<Result<Vec<_>, _>>()?;
+        let mut materials = Vec::new();
+        let mut places = vec![None; cube.nodes().len()];
+        for corner in blends.iter_mut().flatten() {
+            let (node, weight) = *corner;
+            *corner = NOTHING;
+            if weight > 0.0 {
+                let place = *places[node].get_or_insert_with(|| {
+                    materials.push(cube.node_material(node));
+                    materials.len() - 1
+                });
+                *corner = (place, weight);
+            }
+        }
+        Ok(Self { cube, materials, blends })
+    }
+
+    /// The nodes of the cube.
+    pub fn of_nodes(cube: &'c Cube) -> Self {
+        Self::of_materials(cube, (0..cube.nodes().len()).map(|i| cube.node_material(i)).collect())
+    }
+
+    /// Materials of the cube's model.
+    pub fn of_materials(cube: &'c Cube, materials: Vec<Material>) -> Self {
+        let alone = |place| [(place, 1.0), NOTHING, NOTHING, NOTHING];
+        let blends = (0..materials.len()).map(alone).collect();
+        Self { cube, materials, blends }
+    }
+
+    /// What is to say about these materials under a light: ultraviolet that is not known, where a dye in one of
+    /// them absorbs.
+    pub fn missing_ultraviolet(&self, light: &Illuminant) -> Option<MissingUltraviolet> {
+        light.missing_ultraviolet()?;
+        let mut mixtures = self.materials.iter().map(|&m| Mixture::of(self.cube.model(), m));
+        mixtures.find_map(|mixture| mixture.missing_ultraviolet(light))
+    }
+
+    /// An observer of these materials.
+    ///
+    /// # Errors
+    ///
+    /// [`ContractError`] if the observer does not see the light of the cube.
+    pub fn seen_by(&self, observer: &Observer) -> Result<SeenBy<'_>, ContractError> {
+        let contract = Contract { observer: observer.clone(), ..self.cube.contract().clone() };
+        contract.check()?;
+        let own = contract.on(Grid::FIT);
+        let colors = self.colors(&own);
+        let labs = colors.iter().map(|&(color, _)| own.lab_from_xyz(color)).collect();
+        Ok(SeenBy { relighting: self, contract, own, labs })
+    }
+
+    /// The colors, and what of them fluorescence emits.
+    fn colors(&self, colorimetry: &Colorimetry) -> Vec<(Xyz, Xyz)> {
+        let sums = ModelOnGrid::new(self.cube.model(), colorimetry);
+        let each = self.materials.par_iter().map(|&material| sums.color_and_emission(material));
+        let each: Vec<(Xyz, Xyz)> = each.collect();
+        let blend = |parts: &[(usize, f64); 4]| {
+            let parts = || parts.iter().filter(|(_, weight)| *weight > 0.0);
+            let color: Xyz = parts().map(|&(place, weight)| each[place].0 * weight).sum();
+            let emitted: Xyz = parts().map(|&(place, weight)| each[place].1 * weight).sum();
+            (color, emitted)
+        };
+        self.blends.par_iter().map(blend).collect()
+    }
+}
+
+/// Materials in the eyes of an observer, who knows how they look under the light of the cube.
+#[must_use]
+#[derive(Clone, Debug)]
+pub struct SeenBy<'r> {
+    relighting: &'r Relighting<'r>,
+    contract: Contract,
+    own: Colorimetry,
+    /// The colors under the light of the cube.
+    labs: Vec<Lab>,
+}
+
+impl SeenBy<'_> {
+    /// How the materials look under a light, by sums over 5 nm on all threads of the current rayon pool. Results
+    /// do not depend on their number.
+    pub fn under(&self, light: &Illuminant) -> View {
+        let seen = self.contract.seen_under(light, Grid::FIT);
+        let own_from_seen = seen.own_from_seen(&self.own);
+        let scale = WhitenessScale::new(&self.contract.observer, seen.white);
+        let scale = scale.filter(|_| seen.is_adapted);
+        let appearance = |((xyz, emitted), own): ((Xyz, Xyz), &Lab)| {
+            let adapted = || self.own.lab_from_xyz(Xyz(own_from_seen * xyz.0));
+            Appearance {
+                xyz,
+                lab: upglow_color::lab_from_xyz(xyz, seen.white),
+                rgb: seen.colorimetry.rgb_from_xyz(xyz),
+                de2000: seen.is_adapted.then(|| ciede2000(*own, adapted())),
+                fluorescent_share: (xyz.0[1] > 0.0).then(|| emitted.0[1] / xyz.0[1]),
+                whiteness: scale.and_then(|scale| scale.of(xyz)),
+            }
+        };
+        let colors = self.relighting.colors(&seen.colorimetry);
+        let appearances = colors.into_par_iter().zip(&self.labs).map(appearance).collect();
+        View { seen, appearances }
+    }
+}
+
+/// What an observer sees of materials under a light.
+#[derive(Clone, Debug, PartialEq)]
+pub struct View {
+    /// The light and what the observer sees as white.
+    pub seen: SeenUnder,
+    /// One for each material.
+    pub appearances: Vec<Appearance>,
+}
+
+/// How a material looks under a light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Appearance {
+    /// Its color under the light; Y = 1 is white under it if the observer is adapted to the light, else white under
+    /// the light of the cube, at equal power.
+    pub xyz: Xyz,
+    /// CIELAB relative to what the observer sees as white.
+    pub lab: Lab,
+    /// Linear RGB in the space of the cube.
+    pub rgb: LinearRgb,
+    /// CIEDE2000 between this color and that under the light of the cube, each as seen by the observer adapted to the
+    /// light: 0 for grays. `None` under a light that nobody can adapt to.
+    pub de2000: Option<f64>,
+    /// Share of Y that fluorescence emits, 0..=1; `None` for black.
+    pub fluorescent_share: Option<f64>,
+    /// Whiteness and tint, where they are defined.
+    pub whiteness: Option<Whiteness>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Fitter, Preset};
+    use upglow::{FitRecord, Interpolation, Node};
+
+    /// Nodes of 3³ fitted one by one.
+    fn cube() -> Cube {
+        let contract = Contract::default();
+        let (model, options) = (Preset::Natural.model(), Preset::Natural.options());
+        let fitter = Fitter::new(&contract, &model, options).unwrap();
+        let halves = |i: usize| f64::from(u8::try_from(i % 3).unwrap()) / 2.0;
+        let node = |i: usize| {
+            let fit = fitter.fit(LinearRgb([halves(i), halves(i / 3), halves(i / 9)])).unwrap();
+            Node::new(fit.reflectance, fit.fluorescence, fit.de2000)
+        };
+        let nodes = (0..27).map(node).collect();
+        Cube::new(contract, model, FitRecord::default(), 3, nodes).unwrap()
+    }
+
+    #[test]
+    fn colors_are_those_of_the_blends_to_the_last_bit() {
+        let cube = cube();
+        let colors = [[0.9, 0.1, 0.8], [0.5, 0.5, 0.5], [0.0, 0.25, 1.0]].map(LinearRgb);
+        let relighting = Relighting::of_colors(&cube, &colors).unwrap();
+        let observer = Observer::default();
+        let seen_by = relighting.seen_by(&observer).unwrap();
+        for light in ["D65", "A", "FL2"] {
+            let light = Illuminant::named(light).unwrap();
+            let view = seen_by.under(&light);
+            let sums = ModelOnGrid::new(cube.model(), &view.seen.colorimetry);
+            for (rgb, found) in colors.into_iter().zip(view.appearances) {
+                let blend = cube.lookup(rgb, Interpolation::Blend).unwrap();
+                assert_eq!(found.xyz, blend.color(&sums));
+            }
+        }
+    }
+
+    #[test]
+    fn grays_stay_under_every_light_and_magenta_does_not() {
+        // Rounding of Bradford's matrices, in ΔE00.
+        const ROUNDING: f64 = 1e-8;
+        let cube = cube();
+        let colors = [[0.5; 3], [0.3; 3], [1.0; 3], [0.9, 0.0, 0.9]].map(LinearRgb);
+        let relighting = Relighting::of_colors(&cube, &colors).unwrap();
+        for observer in Observer::NAMES {
+            let observer = Observer::named(observer).unwrap();
+            let seen_by = relighting.seen_by(&observer).unwrap();
+            for light in Illuminant::names() {
+                let light = Illuminant::named(light).unwrap();
+                let view = seen_by.under(&light);
+                let moved = view.appearances.iter().map(|seen| seen.de2000.unwrap());
+                let moved: Vec<f64> = moved.collect();
+                assert!(moved[..3].iter().all(|&moved| moved < ROUNDING), "{moved:?}");
+                let is_own = light == cube.contract().illuminant;
+                assert_eq!(moved[3] < ROUNDING, is_own, "{} {moved:?}", light.name());
+                let glow = view.appearances.iter().map(|seen| seen.fluorescent_share.unwrap());
+                let glow: Vec<f64> = glow.collect();
+                assert!(glow[..3] == [0.0; 3] && glow[3] > 0.0 && glow[3] < 1.0, "{glow:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn under_an_ultraviolet_lamp_nobody_is_adapted_and_all_light_is_fluorescence() {
+        let cube = cube();
+        let magenta = [LinearRgb([0.9, 0.0, 0.9])];
+        let relighting = Relighting::of_colors(&cube, &magenta).unwrap();
+        let seen_by = relighting.seen_by(&cube.contract().observer).unwrap();
+        let lamp = Illuminant::line("lamp", 365.0, 12.0).unwrap();
+        let view = seen_by.under(&lamp);
+        assert!(!view.seen.is_adapted);
+        let Appearance { de2000, fluorescent_share, whiteness, .. } = view.appearances[0];
+        assert_eq!((de2000, whiteness), (None, None));
+        assert!(fluorescent_share.unwrap() > 0.99, "{fluorescent_share:?}");
+    }
+
+    #[test]
+    fn the_white_node_is_the_perfect_diffuser() {
+        let cube = cube();
+        let relighting = Relighting::of_nodes(&cube);
+        let seen_by = relighting.seen_by(&cube.contract().observer).unwrap();
+        let view = seen_by.under(&cube.contract().illuminant);
+        let Whiteness { whiteness, tint } = view.appearances[26].whiteness.unwrap();
+        // Single precision of the node.
+        assert!((whiteness - 100.0).abs() < 1e-3 && tint.abs() < 1e-3, "{whiteness} {tint}");
+        assert_eq!(view.appearances[0].whiteness, None);
+    }
+}
