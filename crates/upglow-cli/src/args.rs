@@ -5,6 +5,7 @@ mod build;
 mod explore;
 mod fit_matrix;
 mod pictures;
+mod relight;
 mod values;
 
 use std::ffi::OsString;
@@ -25,6 +26,7 @@ pub(crate) use fit_matrix::FitMatrixArgs;
 pub(crate) use pictures::{
     BakeArgs, BakeForm, BakeFormat, CheckArgs, ExamplesArgs, LintArgs, ReadArgs, SampleName,
 };
+pub(crate) use relight::RelightArgs;
 pub(crate) use values::SlopeLimit;
 use values::{lights, rgb_space, slope_limit};
 
@@ -51,6 +53,8 @@ pub(crate) enum Command {
     Color(ColorArgs),
     /// Fit a material to a measured re-radiation (Donaldson) matrix
     FitMatrix(FitMatrixArgs),
+    /// Show how colors look under other lights and for other observers, as a table and as swatches
+    Relight(RelightArgs),
     /// Convert a cube for other programs: CSV, coefficient table or shader source, or a page to explore it
     Export(ExportArgs),
     /// Convert pictures to files of materials, spectra or colors under a light

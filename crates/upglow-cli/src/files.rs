@@ -12,6 +12,7 @@ pub(crate) use upglow_terminal::files::{
 
 /// The ending of cube files.
 pub(crate) const CUBE: &[&str] = &["safetensors"];
+pub(crate) const CSV: &[&str] = &["csv"];
 /// The endings of pages.
 pub(crate) const PAGE: &[&str] = &["html", "htm"];
 pub(crate) const PNG: &[&str] = &["png"];

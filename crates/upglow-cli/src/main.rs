@@ -5,6 +5,7 @@
 
 mod args;
 mod batch;
+mod color_list;
 mod commands;
 mod files;
 mod name_pattern;

@@ -138,12 +138,27 @@ impl<const N: usize> Display for Table<N> {
 
 /// Three numbers with four decimals, aligned.
 pub(crate) fn triple(values: [f64; 3]) -> String {
-    values.map(|v| format!("{:7.4}", without_negative_zero(v, 4))).join("  ")
+    values.map(|v| decimal(v, 7, 4)).join("  ")
 }
 
-/// Replaces a number that would print as -0.0000 with 0.
-fn without_negative_zero(value: f64, decimals: i32) -> f64 {
-    if value.abs() < 0.5 * 10f64.powi(-decimals) { 0.0 } else { value }
+/// A number with some decimals, as wide as given.
+pub(crate) fn decimal(value: f64, width: usize, decimals: usize) -> String {
+    let text = format!("{value:width$.decimals$}");
+    // No sign before zero.
+    if text.contains(|c: char| ('1'..='9').contains(&c)) {
+        text
+    } else {
+        format!("{:width$.decimals$}", 0.0)
+    }
+}
+
+/// A cell of a CSV file: text, in double quotes if it contains a separator.
+pub(crate) fn quoted(text: &str) -> String {
+    if text.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.to_owned()
+    }
 }
 
 #[cfg(test)]
@@ -167,5 +182,11 @@ mod tests {
     #[test]
     fn zero_has_no_sign() {
         assert_eq!(triple([-1e-9, 0.5, -0.25]), " 0.0000   0.5000  -0.2500");
+    }
+
+    #[test]
+    fn text_with_a_separator_is_quoted() {
+        assert_eq!(quoted("a,\"b\""), "\"a,\"\"b\"\"\"");
+        assert_eq!(quoted("ATTO_390"), "ATTO_390");
     }
 }

@@ -12,9 +12,7 @@ use upglow_color::{Choice, Contract, Illuminant, LinearRgb, MeasuredDye, Observe
 use upglow_fit::{FitOptions, FitOptionsError, Fitter, GivenOptions, Preset};
 use upglow_terminal::Failure;
 
-use crate::args::{
-    BuildArgs, ColorArgs, ContractArgs, FitArgs, LightArgs, ModelArgs, ModelName, SlopeLimits,
-};
+use crate::args::{BuildArgs, ContractArgs, FitArgs, LightArgs, ModelArgs, ModelName, SlopeLimits};
 use crate::files;
 
 /// A cube to build.
@@ -75,15 +73,7 @@ fn contract(args: &ContractArgs) -> Result<Contract, Failure> {
     checked(Contract {
         space: args.space.clone(),
         illuminant: light("--illuminant", &args.illuminant, &args.light)?,
-        observer: named_or_read(
-            "--observer",
-            &args.observer,
-            "x,y,z",
-            Observer::named,
-            |path, text| {
-                Observer::from_csv_file(path, text).map_err(|error| Failure::file(path, error))
-            },
-        )?,
+        observer: observer(&args.observer)?,
         adaptation: args.adapt,
     })
 }
@@ -92,6 +82,40 @@ fn contract(args: &ContractArgs) -> Result<Contract, Failure> {
 pub(crate) fn checked(contract: Contract) -> Result<Contract, Failure> {
     contract.check().map_err(|error| Failure::option("--illuminant", error))?;
     Ok(contract)
+}
+
+/// The observer of a name or file, given with `--observer`.
+pub(crate) fn observer(text: &str) -> Result<Observer, Failure> {
+    named_or_read("--observer", text, "x,y,z", Observer::named, |path, text| {
+        Observer::from_csv_file(path, text).map_err(|error| Failure::file(path, error))
+    })
+}
+
+/// The lights to see a material under besides the cube's own: those that were given with `--light`, or standard
+/// lights and an ultraviolet lamp.
+pub(crate) fn lights_to_see(
+    texts: &[String],
+    args: &LightArgs,
+) -> Result<Vec<Illuminant>, Failure> {
+    let given = lights("--light", texts, args)?;
+    if given.is_empty() {
+        let standard = LIGHTS.iter().filter_map(|name| Illuminant::named(name).ok());
+        return Ok(standard.chain([ultraviolet_lamp()]).collect());
+    }
+    Ok(given)
+}
+
+/// The standard lights.
+const LIGHTS: [&str; 3] = ["D65", "A", "E"];
+
+/// An ultraviolet lamp as used for minerals and banknotes: only fluorescence is visible under it.
+const LAMP_PEAK_NM: f64 = 365.0;
+const LAMP_FWHM_NM: f64 = 12.0;
+
+/// That lamp.
+pub(crate) fn ultraviolet_lamp() -> Illuminant {
+    let name = format!("{LAMP_PEAK_NM} nm lamp");
+    Illuminant::line(&name, LAMP_PEAK_NM, LAMP_FWHM_NM).expect("its power reaches beyond 360 nm")
 }
 
 /// The light of a name or file, given with `option`.
@@ -306,24 +330,26 @@ fn model_failure(error: ModelError) -> Failure {
 }
 
 /// The color on the command line, in the range of a look-up or of a direct fit.
-pub(crate) fn color(args: &ColorArgs) -> Result<LinearRgb, Failure> {
-    let [red, green, blue] = [("R", &args.red), ("G", &args.green), ("B", &args.blue)]
-        .map(|(channel, text)| component(channel, text, args.direct));
-    Ok(LinearRgb([red?, green?, blue?]))
+pub(crate) fn color(texts: [&str; 3], direct: bool) -> Result<LinearRgb, Failure> {
+    let mut rgb = [0.0; 3];
+    for ((value, text), channel) in rgb.iter_mut().zip(texts).zip(["R", "G", "B"]) {
+        *value = component(text, direct).map_err(|fault| Failure::input(channel, fault))?;
+    }
+    Ok(LinearRgb(rgb))
 }
 
-fn component(channel: &str, text: &str, direct: bool) -> Result<f64, Failure> {
+/// One component of a color, or what is wrong with it.
+pub(crate) fn component(text: &str, direct: bool) -> Result<f64, String> {
     let brightest = Fitter::BRIGHTEST;
     let most = if direct { brightest } else { 1.0 };
-    let fault = match text.trim().parse::<f64>() {
+    Err(match text.trim().parse::<f64>() {
         Ok(value) if (0.0..=most).contains(&value) => return Ok(value),
         Ok(value) if (0.0..=brightest).contains(&value) => format!(
             "{text} is beyond the cube, expected 0 to 1, or --direct, which fits colors up to {brightest}"
         ),
         Ok(_) => format!("{text}, expected 0 to {most}"),
         Err(_) => format!("{text:?}, expected a number from 0 to {most}"),
-    };
-    Err(Failure::input(channel, fault))
+    })
 }
 
 #[cfg(test)]
@@ -332,22 +358,23 @@ mod tests {
 
     #[test]
     fn components_out_of_range_are_refused() {
-        assert_eq!(component("R", "0.5", false), Ok(0.5));
-        assert_eq!(component("R", "1.58", true), Ok(1.58));
-        for (channel, text, direct, line) in [
-            ("G", "-0.5", false, "G: -0.5, expected 0 to 1"),
-            ("G", "NaN", false, "G: NaN, expected 0 to 1"),
-            ("G", "inf", true, "G: inf, expected 0 to 10"),
-            ("B", "blue", false, "B: \"blue\", expected a number from 0 to 1"),
+        assert_eq!(component("0.5", false), Ok(0.5));
+        assert_eq!(component("1.58", true), Ok(1.58));
+        for (text, direct, fault) in [
+            ("-0.5", false, "-0.5, expected 0 to 1"),
+            ("NaN", false, "NaN, expected 0 to 1"),
+            ("inf", true, "inf, expected 0 to 10"),
+            ("blue", false, "\"blue\", expected a number from 0 to 1"),
             (
-                "B",
                 "1.58",
                 false,
-                "B: 1.58 is beyond the cube, expected 0 to 1, or --direct, which fits colors up to 10",
+                "1.58 is beyond the cube, expected 0 to 1, or --direct, which fits colors up to 10",
             ),
         ] {
-            assert_eq!(component(channel, text, direct), Err(Failure::Input(line.into())));
+            assert_eq!(component(text, direct), Err(fault.into()));
         }
+        let refused = color(["0", "-1", "0"], false);
+        assert_eq!(refused, Err(Failure::Input("G: -1, expected 0 to 1".into())));
     }
 
     #[test]

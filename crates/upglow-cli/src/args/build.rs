@@ -35,7 +35,12 @@ pub(crate) struct ContractArgs {
     pub(crate) illuminant: String,
     #[command(flatten)]
     pub(crate) light: LightArgs,
-    #[arg(long, default_value = "cie-1931-2deg", value_name = "NAME|FILE", help = observers())]
+    #[arg(
+        long,
+        default_value = "cie-1931-2deg",
+        value_name = "NAME|FILE",
+        help = format!("Observer: {}", observers())
+    )]
     pub(crate) observer: String,
     /// Chromatic adaptation from the white of the RGB space to that of the light
     #[arg(long, default_value_t, value_name = "NAME", value_parser = word::<Adaptation>())]

@@ -68,7 +68,7 @@ pub(super) fn lights() -> String {
 pub(super) fn observers() -> String {
     let names = Observer::NAMES.join(", ");
     format!(
-        "Observer: {names}, or a CSV file of color-matching functions with the header \
+        "{names}, or a CSV file of color-matching functions with the header \
          `wavelength_nm,x,y,z`"
     )
 }

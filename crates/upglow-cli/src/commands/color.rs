@@ -1,55 +1,33 @@
 //! `upglow color`: shows the material of one color.
 
+use std::path::Path;
+
 use upglow::{Cube, Interpolation, Mixture, ModelOnGrid};
-use upglow_color::{
-    Adaptation, ColorSolids, Colorimetry, Contract, Grid, Illuminant, LinearRgb, Metric, RgbSpace,
-    Xyz,
-};
+use upglow_color::{ColorSolids, Colorimetry, Contract, Grid, Illuminant, LinearRgb, Metric, Xyz};
 use upglow_fit::{FitOptions, Fitter, MaterialKind};
 use upglow_terminal::{Console, Failure};
 
 use super::color_report::{ColorReport, LightReport, PartReport};
 use crate::args::ColorArgs;
 use crate::output::warn_of_ultraviolet;
-use crate::plot::{Curves, Figure, Swatch, svg};
+use crate::plot::{Curves, Figure, Swatch, screen, svg};
 use crate::{files, plan};
 
-/// The lights under which the material is shown besides the cube's own: those that were given, or
-/// standard lights and an ultraviolet lamp.
-fn lights(args: &ColorArgs) -> Result<Vec<Illuminant>, Failure> {
-    let given = plan::lights("--light", &args.lights, &args.light)?;
-    if given.is_empty() {
-        let standard = LIGHTS.iter().filter_map(|name| Illuminant::named(name).ok());
-        return Ok(standard.chain([ultraviolet_lamp()]).collect());
-    }
-    Ok(given)
-}
-
-/// The standard lights.
-const LIGHTS: [&str; 3] = ["D65", "A", "E"];
-
-/// An ultraviolet lamp as used for minerals and banknotes: only fluorescence is visible under it.
-const LAMP_PEAK_NM: f64 = 365.0;
-const LAMP_FWHM_NM: f64 = 12.0;
-
-/// That lamp.
-pub(super) fn ultraviolet_lamp() -> Illuminant {
-    let name = format!("{LAMP_PEAK_NM} nm lamp");
-    Illuminant::line(&name, LAMP_PEAK_NM, LAMP_FWHM_NM).expect("its power reaches beyond 360 nm")
-}
-
 pub(crate) fn run(args: &ColorArgs, console: &Console) -> Result<(), Failure> {
-    let rgb = plan::color(args)?;
+    let rgb = plan::color([&args.red, &args.green, &args.blue], args.direct)?;
     if let Some(plot) = &args.plot {
         files::check_ending(plot, files::SVG)?;
         files::check_output_of(plot, Some(&args.file), &files::really(&[]))?;
     }
-    let lights = lights(args)?;
+    let lights = plan::lights_to_see(&args.lights, &args.light)?;
     let cube = files::read_cube(&args.file)?;
     let interpolation = (!args.direct).then(|| args.interpolation.unwrap_or_default());
     let mixture = match interpolation {
         Some(interpolation) => cube.lookup(rgb, interpolation).map_err(no_material)?,
-        None => fitted(rgb, &cube, args)?,
+        None => {
+            let fit = fitter_of(&cube, &args.file)?.fit(rgb).map_err(no_material)?;
+            Mixture::of(cube.model(), fit.material())
+        }
     };
     let shown = Shown::new(&cube, &mixture, rgb, interpolation, lights);
     if let Some(path) = &args.plot {
@@ -62,14 +40,10 @@ fn no_material(error: impl std::error::Error + Send + Sync + 'static) -> Failure
     Failure::input("R G B", error)
 }
 
-/// A material fitted to one color with the options of the cube.
-fn fitted<'c>(rgb: LinearRgb, cube: &'c Cube, args: &ColorArgs) -> Result<Mixture<'c>, Failure> {
-    let options =
-        FitOptions::try_from(cube.fit()).map_err(|error| Failure::file(&args.file, error))?;
-    let fitter = Fitter::new(cube.contract(), cube.model(), options)
-        .map_err(|error| Failure::file(&args.file, error))?;
-    let fit = fitter.fit(rgb).map_err(no_material)?;
-    Ok(Mixture::of(cube.model(), fit.material()))
+/// A fitter with the options of a cube from a file.
+pub(super) fn fitter_of(cube: &Cube, file: &Path) -> Result<Fitter, Failure> {
+    let options = FitOptions::try_from(cube.fit()).map_err(|error| Failure::file(file, error))?;
+    Fitter::new(cube.contract(), cube.model(), options).map_err(|error| Failure::file(file, error))
 }
 
 /// A material and the color that it should have.
@@ -164,12 +138,7 @@ impl<'a> Shown<'a> {
     }
 
     fn figure(&self) -> Figure<'_> {
-        let screen = Contract {
-            space: RgbSpace::named("srgb").unwrap_or_default(),
-            adaptation: Adaptation::Bradford,
-            ..self.cube.contract().clone()
-        };
-        let screen = screen.on(Grid::FIT);
+        let screen = screen(self.cube.contract()).on(Grid::FIT);
         let swatch = |xyz| Swatch::from_linear(screen.rgb_from_xyz(xyz));
         Figure {
             curves: &self.curves,

@@ -312,18 +312,22 @@ impl ColorReport<'_> {
             table.add([light.name.clone(), triple(light.xyz.0), triple(light.rgb.0)]);
         }
         let Self { rgb_space: space, illuminant: own, adaptation, .. } = self;
-        let text =
-            format!("{table}RGB is linear {space}, adaptation {adaptation}. White has Y = 1");
         let dark = self.lights.iter().filter(|light| !light.is_adapted);
         let dark: Vec<&str> = dark.map(|light| light.name.as_str()).collect();
-        if dark.is_empty() {
-            return text + " under each light.\n";
-        }
-        let (dark, have) = (dark.join(", "), if dark.len() == 1 { "has" } else { "have" });
-        format!(
-            "{text} under each light except\n\
-             {dark}, which {have} as much power as {own} and nearly no visible light: the observer\n\
-             is adapted to {own}.\n"
-        )
+        format!("{table}{}", scale_note(space, own, *adaptation, &dark))
     }
+}
+
+/// What RGB and Y mean under lights, some of which are too `dark` to see by.
+pub(super) fn scale_note(space: &str, own: &str, adaptation: Adaptation, dark: &[&str]) -> String {
+    let text = format!("RGB is linear {space}, adaptation {adaptation}. White has Y = 1");
+    if dark.is_empty() {
+        return text + " under each light.\n";
+    }
+    let (dark, have) = (dark.join(", "), if dark.len() == 1 { "has" } else { "have" });
+    format!(
+        "{text} under each light except\n\
+         {dark}, which {have} as much power as {own} and nearly no visible light: the observer\n\
+         is adapted to {own}.\n"
+    )
 }

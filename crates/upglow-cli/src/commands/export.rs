@@ -14,7 +14,7 @@ use upglow_terminal::{Console, Failure, Report};
 use super::material_report::{dye_names, unsigned_zeros};
 use crate::args::{ExportArgs, ExportFormat, SlopeLimit, limit_text};
 use crate::files;
-use crate::output::{Lines, warn};
+use crate::output::{Lines, quoted, warn};
 use crate::plan::refuse_ignored;
 
 const HEADER: &str = "r,g,b,c0,c1,c2,shift_nm,width_nm,slope_per_nm,dye_a,dye_b,weight,\
@@ -184,15 +184,6 @@ fn fluorescence_cells(node: &Node, model: &Model) -> [String; 8] {
     }
 }
 
-/// A cell of text, in double quotes if it contains a separator.
-fn quoted(text: &str) -> String {
-    if text.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", text.replace('"', "\"\""))
-    } else {
-        text.to_owned()
-    }
-}
-
 impl Report for ExportReport {
     fn text(&self) -> String {
         let mut lines = Lines::default();
@@ -254,11 +245,5 @@ mod tests {
     fn a_flat_node_without_fluorescence_has_empty_cells() {
         let lines = lines(Model::Reflectance, Node::default());
         assert_eq!(lines[1], "0,0,0,0,0,0,,,,,,,,,,,,0");
-    }
-
-    #[test]
-    fn text_with_a_separator_is_quoted() {
-        assert_eq!(quoted("a,\"b\""), "\"a,\"\"b\"\"\"");
-        assert_eq!(quoted("ATTO_390"), "ATTO_390");
     }
 }

@@ -11,7 +11,6 @@ use upglow_fit::{
 use upglow_image::{FormError, SpectralPicture};
 use upglow_terminal::{Console, Failure, Report};
 
-use super::color::ultraviolet_lamp;
 use super::material_report::ReflectanceReport;
 use crate::args::FitMatrixArgs;
 use crate::output::{Lines, Side, Table, triple};
@@ -30,7 +29,7 @@ fn lights(args: &FitMatrixArgs) -> Result<Vec<Illuminant>, Failure> {
     let named = |name| Illuminant::named(name).expect("the light is built in");
     let cut = named("D65").cut_below("D65 from 400 nm", 400.0).expect("it is visible");
     let [day, a, e, fl2, hp5] = ["D65", "A", "E", "FL2", "HP5"].map(named);
-    Ok(vec![day, a, e, cut, fl2, hp5, ultraviolet_lamp()])
+    Ok(vec![day, a, e, cut, fl2, hp5, plan::ultraviolet_lamp()])
 }
 
 pub(crate) fn run(args: &FitMatrixArgs, console: &Console) -> Result<(), Failure> {

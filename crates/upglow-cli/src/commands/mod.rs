@@ -15,6 +15,8 @@ mod inspect_table;
 mod lint;
 mod material_report;
 mod read;
+mod relight;
+mod relight_report;
 mod verify;
 
 use upglow_terminal::Failure;
@@ -29,6 +31,7 @@ pub(crate) fn run(Args { command, console }: Args) -> Result<(), Failure> {
         Command::Verify(args) => verify::run(&args, &console),
         Command::Color(args) => color::run(&args, &console),
         Command::FitMatrix(args) => fit_matrix::run(&args, &console),
+        Command::Relight(args) => relight::run(&args, &console),
         Command::Export(args) => export::run(&args, &console),
         Command::Bake(args) => bake::run(&args, &console),
         Command::Check(args) => check::run(&args, &console),

@@ -3,7 +3,7 @@
 use upglow_color::{DonaldsonMatrix, MatrixSums};
 use upglow_svg::{Element, byte, escape, hex};
 
-use super::svg::{FAINT, FONT, INK, at, hundredths, line, outlined, shortened};
+use super::svg::{CAPTION_LETTERS, FAINT, INK, at, file, hundredths, line, outlined, shortened};
 
 const WIDTH: f64 = 1120.0;
 const HEIGHT: f64 = 840.0;
@@ -45,8 +45,7 @@ pub(crate) struct MatrixFigure<'a> {
 /// The figure as the text of an SVG file.
 pub(crate) fn draw(figure: &MatrixFigure<'_>) -> String {
     let most = greatest(figure.measured);
-    let page = at("rect", 0, 0).with("width", WIDTH).with("height", HEIGHT);
-    let mut elements = vec![page.with("fill", "#ffffff").empty()];
+    let mut elements = Vec::new();
     let maps = [(MAPS[0], "measured", figure.measured), (MAPS[1], "fitted", figure.fitted)];
     for (left, name, matrix) in maps {
         elements.extend(map(matrix, left, name, most));
@@ -55,18 +54,12 @@ pub(crate) fn draw(figure: &MatrixFigure<'_>) -> String {
     elements.extend(chart(figure));
     let text = |(row, line): (u8, &String)| {
         let y = TOP + 12.0 + CAPTION_STEP * f64::from(row);
-        at("text", SIDE, y).with("font-size", 12.5).around(escape(&shortened(line)))
+        at("text", SIDE, y)
+            .with("font-size", 12.5)
+            .around(escape(&shortened(line, CAPTION_LETTERS)))
     };
     elements.extend((3..).zip(&figure.caption).map(text));
-    let svg = Element::new("svg")
-        .with("xmlns", "http://www.w3.org/2000/svg")
-        .with("width", WIDTH)
-        .with("height", HEIGHT)
-        .with("viewBox", format_args!("0 0 {WIDTH} {HEIGHT}"))
-        .with("font-family", FONT)
-        .with("font-size", 14)
-        .with("fill", INK);
-    svg.around(format_args!("\n{}\n", elements.join("\n"))) + "\n"
+    file([WIDTH, HEIGHT], &elements)
 }
 
 /// The greatest share that leaves at another wavelength, for the scale of both maps.

@@ -2,9 +2,10 @@
 
 pub(crate) mod matrix;
 pub(crate) mod svg;
+pub(crate) mod swatches;
 
 use upglow::{Bispectral, Material, Mixture, Model, Sigmoid};
-use upglow_color::{Colorimetry, Grid, LinearRgb, srgb_encoded};
+use upglow_color::{Adaptation, Colorimetry, Contract, Grid, LinearRgb, RgbSpace, srgb_encoded};
 use upglow_svg::{byte, hex};
 
 /// First wavelength of every figure, nm.
@@ -104,6 +105,15 @@ pub(crate) struct Swatch {
     pub(crate) hex: String,
     /// Whether the color is outside sRGB.
     pub(crate) clipped: bool,
+}
+
+/// How a screen shows the colors of a contract: in sRGB, adapted to the light.
+pub(crate) fn screen(contract: &Contract) -> Contract {
+    Contract {
+        space: RgbSpace::named("srgb").unwrap_or_default(),
+        adaptation: Adaptation::Bradford,
+        ..contract.clone()
+    }
 }
 
 /// Components up to this far outside 0..=1 are due to rounding.

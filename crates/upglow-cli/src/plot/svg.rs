@@ -24,12 +24,12 @@ const SWATCH: f64 = 100.0;
 const SWATCH_TOP: f64 = TOP + 122.0;
 
 /// Longer lines of the caption would extend beyond the page.
-const CAPTION_LETTERS: usize = 31;
+pub(super) const CAPTION_LETTERS: usize = 31;
 /// Four lines and the dyes of four materials; more would extend beyond the page.
 const CAPTION_LINES: usize = 12;
 const CAPTION_STEP: f64 = 18.0;
 
-pub(super) const FONT: &str = "'DejaVu Sans', Verdana, Arial, sans-serif";
+const FONT: &str = "'DejaVu Sans', Verdana, Arial, sans-serif";
 pub(super) const INK: &str = "#222222";
 pub(super) const FAINT: &str = "#dddddd";
 
@@ -45,9 +45,7 @@ struct Stroke {
 /// The figure as the text of an SVG file.
 pub(crate) fn draw(figure: &Figure<'_>) -> String {
     let strokes = strokes(figure.curves);
-    let page = Element::new("rect").with("width", WIDTH).with("height", HEIGHT);
-    let mut elements = vec![page.with("fill", "#ffffff").empty()];
-    elements.extend(axes());
+    let mut elements = axes();
     if figure.curves.is_fluorescent() {
         elements.push(emission_area(figure.curves));
     }
@@ -55,15 +53,22 @@ pub(crate) fn draw(figure: &Figure<'_>) -> String {
     elements.extend((0_u8..).zip(&strokes).flat_map(|(row, stroke)| stroke.legend(row)));
     elements.extend(swatches(figure));
     elements.extend(caption(figure));
+    file([WIDTH, HEIGHT], &elements)
+}
+
+/// A file of elements on white paper.
+pub(super) fn file([width, height]: [f64; 2], elements: &[String]) -> String {
     let svg = Element::new("svg")
         .with("xmlns", "http://www.w3.org/2000/svg")
-        .with("width", WIDTH)
-        .with("height", HEIGHT)
-        .with("viewBox", format_args!("0 0 {WIDTH} {HEIGHT}"))
+        .with("width", width)
+        .with("height", height)
+        .with("viewBox", format_args!("0 0 {width} {height}"))
         .with("font-family", FONT)
         .with("font-size", 14)
         .with("fill", INK);
-    svg.around(format_args!("\n{}\n", elements.join("\n"))) + "\n"
+    let paper = Element::new("rect").with("width", width).with("height", height);
+    let paper = paper.with("fill", "#ffffff").empty();
+    svg.around(format_args!("\n{paper}\n{}\n", elements.join("\n"))) + "\n"
 }
 
 impl Stroke {
@@ -209,16 +214,19 @@ fn caption(figure: &Figure<'_>) -> Vec<String> {
     let lines = figure.caption.iter().take(CAPTION_LINES).cloned().chain(note);
     let text = |(row, line): (u8, String)| {
         let y = SWATCH_TOP + SWATCH + 26.0 + CAPTION_STEP * f64::from(row);
-        at("text", SIDE, y).with("font-size", 12.5).around(escape(&shortened(&line)))
+        at("text", SIDE, y)
+            .with("font-size", 12.5)
+            .around(escape(&shortened(&line, CAPTION_LETTERS)))
     };
     (0..).zip(lines).map(text).collect()
 }
 
-pub(super) fn shortened(line: &str) -> String {
-    if line.chars().count() <= CAPTION_LETTERS {
+/// At most so many letters of a line.
+pub(super) fn shortened(line: &str, letters: usize) -> String {
+    if line.chars().count() <= letters {
         return line.to_owned();
     }
-    line.chars().take(CAPTION_LETTERS - 1).chain(['…']).collect()
+    line.chars().take(letters - 1).chain(['…']).collect()
 }
 
 #[cfg(test)]

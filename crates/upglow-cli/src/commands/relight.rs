@@ -1,0 +1,242 @@
+//! `upglow relight`: how the materials of a cube look under lights, to observers.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use rayon::prelude::*;
+use upglow::Cube;
+use upglow_color::{Contract, ContractError, Grid, Illuminant, LinearRgb, Observer, Whiteness};
+use upglow_fit::{Appearance, Relighting, View};
+use upglow_terminal::{Console, Failure, check_stopped};
+
+use super::color::fitter_of;
+use super::relight_report::{RelightReport, ViewReport};
+use crate::args::RelightArgs;
+use crate::color_list::{self, NamedColor};
+use crate::output::{quoted, warn_of_ultraviolet};
+use crate::plot::swatches::{self, Chart, Column};
+use crate::plot::{Swatch, screen};
+use crate::{files, plan};
+
+/// More would take gigabytes: each takes 150 bytes of memory and 300 of a CSV file.
+const MOST_ROWS: usize = 2_000_000;
+
+/// Colors that are drawn, or printed as text.
+pub(super) const MOST_SHOWN: usize = 64;
+
+const HEADER: &str = "name,r,g,b,light,observer,is_adapted,x,y,z,lab_l,lab_a,lab_b,\
+                      r_under,g_under,b_under,de2000,fluorescent_share,whiteness,tint";
+
+pub(crate) fn run(args: &RelightArgs, console: &Console) -> Result<(), Failure> {
+    let listed = listed(args)?;
+    for (output, endings) in [(&args.csv, files::CSV), (&args.plot, files::SVG)] {
+        if let Some(output) = output {
+            files::check_ending(output, endings)?;
+            files::check_output_of(output, Some(&args.file), &files::really(&[]))?;
+            check_is_no_input(output, args)?;
+        }
+    }
+    let mut lights = plan::lights_to_see(&args.lights, &args.light)?;
+    let observers = args.observers.iter().map(|text| plan::observer(text));
+    let mut observers = observers.collect::<Result<Vec<_>, _>>()?;
+    let cube = files::read_cube(&args.file)?;
+    let Contract { illuminant: own, observer, .. } = cube.contract();
+    if args.lights.is_empty() {
+        lights.retain(|light| light.name() != own.name());
+        lights.insert(0, own.clone());
+    }
+    if observers.is_empty() {
+        observers.push(observer.clone());
+    }
+    let colors = listed.unwrap_or_else(|| nodes(&cube));
+    check_rows(colors.len(), lights.len(), observers.len())?;
+    let seen = console.work(args.threads, |_| {
+        let relighting = relighting(&cube, &colors, args)?;
+        let views = views(&cube, &relighting, &lights, &observers)?;
+        let csv = args.csv.as_ref().map(|_| csv(&colors, &views));
+        Ok::<_, Failure>((views, csv))
+    })?;
+    let (views, csv) = seen?;
+    if let (Some(path), Some(text)) = (&args.csv, &csv) {
+        files::write(path, text.as_bytes())?;
+    }
+    if let Some(path) = &args.plot {
+        files::write(path, swatches::draw(&chart(&cube, &colors, &views, args)).as_bytes())?;
+    }
+    console.print(&RelightReport {
+        file: args.file.display().to_string(),
+        rgb_space: cube.contract().space.name(),
+        illuminant: own.name(),
+        adaptation: cube.contract().adaptation,
+        colors: &colors,
+        views: &views,
+        csv: args.csv.as_ref().map(|path| path.display().to_string()),
+        plot: args.plot.as_ref().map(|path| path.display().to_string()),
+    })
+}
+
+/// The colors that were given; `None` for all nodes.
+fn listed(args: &RelightArgs) -> Result<Option<Vec<NamedColor>>, Failure> {
+    match (&args.red, &args.green, &args.blue, &args.colors) {
+        (Some(red), Some(green), Some(blue), _) => {
+            let rgb = plan::color([red, green, blue], args.direct)?;
+            Ok(Some(vec![NamedColor { name: String::new(), rgb }]))
+        }
+        (.., Some(list)) => color_list::read(list, args.direct).map(Some),
+        _ if args.nodes => Ok(None),
+        _ => {
+            let message = "not given, expected R G B, --colors FILE.csv or --nodes";
+            Err(Failure::Usage(format!("colors: {message}")))
+        }
+    }
+}
+
+/// Checks that an output does not replace the list of colors, a light or an observer.
+fn check_is_no_input(output: &Path, args: &RelightArgs) -> Result<(), Failure> {
+    let list = args.colors.iter().map(PathBuf::as_path);
+    let mut inputs = list.chain(args.lights.iter().chain(&args.observers).map(Path::new));
+    if inputs.any(|input| files::is_same(input, output)) {
+        let message = "an input of this command, expected another file to write";
+        return Err(Failure::file(output, message));
+    }
+    Ok(())
+}
+
+fn nodes(cube: &Cube) -> Vec<NamedColor> {
+    let node = |i| NamedColor { name: String::new(), rgb: cube.node_rgb(i) };
+    (0..cube.nodes().len()).map(node).collect()
+}
+
+fn check_rows(colors: usize, lights: usize, observers: usize) -> Result<(), Failure> {
+    let rows = colors.saturating_mul(lights).saturating_mul(observers);
+    if rows <= MOST_ROWS {
+        return Ok(());
+    }
+    let message = format!(
+        "{colors} colors under {lights} lights for {observers} observers are {rows} rows, \
+         expected at most {MOST_ROWS}"
+    );
+    Err(Failure::Usage(message))
+}
+
+fn relighting<'c>(
+    cube: &'c Cube,
+    colors: &[NamedColor],
+    args: &RelightArgs,
+) -> Result<Relighting<'c>, Failure> {
+    if args.nodes {
+        return Ok(Relighting::of_nodes(cube));
+    }
+    if args.direct {
+        let fitter = fitter_of(cube, &args.file)?;
+        let fits = colors.par_iter().map(|color| {
+            check_stopped()?;
+            let fit = fitter.fit(color.rgb).map_err(|error| Failure::input("R G B", error))?;
+            Ok::<_, Failure>(fit.material())
+        });
+        let materials = fits.collect::<Result<Vec<_>, Failure>>()?;
+        return Ok(Relighting::of_materials(cube, materials));
+    }
+    let rgb: Vec<LinearRgb> = colors.iter().map(|color| color.rgb).collect();
+    Relighting::of_colors(cube, &rgb).map_err(|error| Failure::input("R G B", error))
+}
+
+/// Each light for each observer.
+fn views(
+    cube: &Cube,
+    relighting: &Relighting<'_>,
+    lights: &[Illuminant],
+    observers: &[Observer],
+) -> Result<Vec<ViewReport>, Failure> {
+    let missing = lights.iter().map(|light| relighting.missing_ultraviolet(light));
+    let missing: Vec<Option<String>> = missing.map(warn_of_ultraviolet).collect();
+    let mut views = Vec::new();
+    for observer in observers {
+        let refused = |error: ContractError| Failure::option("--observer", error);
+        let seen_by = relighting.seen_by(observer).map_err(refused)?;
+        for (light, missing) in lights.iter().zip(&missing) {
+            check_stopped()?;
+            let View { seen, appearances } = seen_by.under(light);
+            views.push(ViewReport {
+                light: light.name().into(),
+                observer: observer.name().into(),
+                is_adapted: seen.is_adapted,
+                white: seen.white,
+                missing_ultraviolet: missing.clone(),
+                swatches: swatches_of(cube, light, observer, &appearances),
+                appearances,
+            });
+        }
+    }
+    Ok(views)
+}
+
+/// The first colors as a screen shows them.
+fn swatches_of(
+    cube: &Cube,
+    light: &Illuminant,
+    observer: &Observer,
+    appearances: &[Appearance],
+) -> Vec<Swatch> {
+    let screen = Contract { observer: observer.clone(), ..screen(cube.contract()) };
+    let seen = screen.seen_under(light, Grid::FIT);
+    let shown = appearances.iter().take(MOST_SHOWN);
+    shown.map(|a| Swatch::from_linear(seen.colorimetry.rgb_from_xyz(a.xyz))).collect()
+}
+
+/// A line for each color under each light, light by light. Numbers have as many digits as are needed to read them
+/// back exactly; cells of what is not defined are empty.
+fn csv(colors: &[NamedColor], views: &[ViewReport]) -> String {
+    let block = |view: &ViewReport| {
+        let (light, observer) = (quoted(&view.light), quoted(&view.observer));
+        let mut text = String::new();
+        for (color, seen) in colors.iter().zip(&view.appearances) {
+            let LinearRgb([r, g, b]) = color.rgb;
+            let _ = write!(text, "{},{r},{g},{b},", quoted(&color.name));
+            let _ = write!(text, "{light},{observer},{},", view.is_adapted);
+            let [x, y, z] = seen.xyz.0;
+            let LinearRgb([r, g, b]) = seen.rgb;
+            let _ = write!(text, "{x},{y},{z},{},{},{},", seen.lab.l, seen.lab.a, seen.lab.b);
+            let _ = write!(text, "{r},{g},{b}");
+            let Whiteness { whiteness, tint } =
+                seen.whiteness.unwrap_or(Whiteness { whiteness: f64::NAN, tint: f64::NAN });
+            let defined = |value: Option<f64>| value.unwrap_or(f64::NAN);
+            for value in [defined(seen.de2000), defined(seen.fluorescent_share), whiteness, tint] {
+                text.push(',');
+                // Writing to a string cannot fail.
+                let _ = if value.is_nan() { Ok(()) } else { write!(text, "{value}") };
+            }
+            text.push('\n');
+        }
+        text
+    };
+    let blocks: Vec<String> = views.par_iter().map(block).collect();
+    format!("{HEADER}\n{}", blocks.concat())
+}
+
+fn chart(cube: &Cube, colors: &[NamedColor], views: &[ViewReport], args: &RelightArgs) -> Chart {
+    let own = cube.contract().illuminant.name();
+    let names_observers = args.observers.len() > 1;
+    let column = |view: &ViewReport| {
+        let mut head = vec![view.light.clone()];
+        if names_observers {
+            head.push(view.observer.clone());
+        }
+        if !view.is_adapted {
+            head.push(format!("seen from {own}"));
+        }
+        Column { head, swatches: view.swatches.clone() }
+    };
+    let all = colors.len();
+    let some = (all > MOST_SHOWN).then(|| format!("The first {MOST_SHOWN} of {all} colors."));
+    let observer = views.first().filter(|_| !names_observers).map(|view| view.observer.as_str());
+    let seen_by = observer.map(|name| format!(" for {name}")).unwrap_or_default();
+    let adapted = "Each light is shown with its own white as the white of the screen, but for lights that nobody \
+                   can adapt to.";
+    Chart {
+        title: format!("{}{seen_by}", args.file.display()),
+        rows: colors.iter().take(MOST_SHOWN).map(NamedColor::label).collect(),
+        columns: views.iter().map(column).collect(),
+        notes: some.into_iter().chain([adapted.to_owned()]).collect(),
+    }
+}
