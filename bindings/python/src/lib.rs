@@ -22,6 +22,7 @@ mod model;
 mod nodes;
 mod observer;
 mod questions;
+mod relight;
 mod rows;
 mod spectra;
 mod standing;
@@ -51,6 +52,7 @@ mod _upglow {
         model::{DyeSet, Model},
         observer::Observer,
         questions::answer,
+        relight::relight,
         rows::first_outside,
         spectra::{reradiation_matrix, spectrum},
         standing::standing,

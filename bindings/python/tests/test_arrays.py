@@ -129,6 +129,7 @@ def test_colors_outside_are_refused_with_index_and_value(cube, dtype) -> None:
         cube.material,
         cube.corners,
         lambda a: cube.rgb_under(a, "A"),
+        lambda a: cube.relight(a, ["A"]),
         lambda a: cube.reflectance(a, 500.0),
         lambda a: cube.albedo(a, 500.0),
         lambda a: cube.reradiation(a, 500.0, 550.0),
@@ -267,6 +268,7 @@ def test_results_do_not_depend_on_threads(cube, rng) -> None:
     calls = [
         lambda n: cube.xyz(rgb, threads=n),
         lambda n: cube.rgb_under(rgb, "A", threads=n),
+        lambda n: cube.relight(rgb, ["D65", "A"], threads=n).lab,
         lambda n: cube.reflectance(rgb, nm, threads=n),
         lambda n: cube.reflectance(single, nm, threads=n),
         lambda n: cube.albedo(single, nm, threads=n),

@@ -77,6 +77,27 @@ def test_both_compute_the_same_color_under_every_light(program: str, file: Path,
         assert np.abs(found - light["rgb"]).max() < 4 * SINGLE, light["name"]
 
 
+def test_both_relight_alike(program: str, file: Path) -> None:
+    cube = upglow.Cube.read(file)
+    lights = ["D65", "A", "M1"]
+    words = [word for light in lights for word in ("--light", light)]
+    for observer in ("cie-1931-2deg", "cie-1964-10deg"):
+        given = *map(str, COLORS[0]), *words, "--observer", observer
+        told = run(program, "relight", str(file), *given)
+        relit = cube.relight([COLORS[0]], lights, observer=observer)
+        assert relit.xyz.shape == relit.lab.shape == relit.rgb.shape == (3, 1, 3)
+        for i, view in enumerate(told["views"]):
+            (color,) = view["colors"]
+            assert relit.is_adapted[i] == view["is_adapted"]
+            assert relit.white[i].tolist() == view["white"]
+            assert relit.xyz[i, 0].tolist() == color["xyz"]
+            assert relit.rgb[i, 0].tolist() == color["rgb"]
+            assert relit.lab[i, 0].tolist() == list(color["lab"].values())
+            assert relit.de2000[i, 0] == color["de2000"]
+            assert relit.fluorescent_share[i, 0] == color["fluorescent_share"]
+            assert np.isnan(relit.whiteness[i, 0]) == (color["whiteness"] is None)
+
+
 def test_both_fit_the_same_material(program: str, file: Path) -> None:
     cube = upglow.Cube.read(file)
     told = run(program, "color", str(file), "0.9", "0.1", "0.8", "--direct")

@@ -28,7 +28,7 @@ The library's own documentation, the file format and the physics: see the reposi
 
 from . import figures
 from ._contract import Contract
-from ._cube import Cube, CubeCheck, CubeSummary, Samples, build
+from ._cube import Cube, CubeCheck, CubeSummary, Relit, Samples, build
 from ._illuminant import Illuminant
 from ._materials import Corners, Materials
 from ._matrix import DonaldsonMatrix, MatrixDifference, MatrixFit, fit_matrix
@@ -60,6 +60,7 @@ __all__ = [
     "MatrixFit",
     "Observer",
     "Reflectance",
+    "Relit",
     "Samples",
     "Standing",
     "VerifyReport",

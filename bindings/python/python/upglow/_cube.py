@@ -31,6 +31,7 @@ from ._contract import Contract
 from ._illuminant import Illuminant
 from ._materials import Corners, Materials
 from ._models import Model
+from ._observer import Observer
 from ._progress import Report, reporting
 from ._standing import standing
 from ._verify import Check, VerifyReport
@@ -67,6 +68,31 @@ class CubeCheck(NamedTuple):
     """CIEDE2000 to the nearest color that a material can reproduce, as in `Standing`."""
     de2000: NDArray[np.float32]
     """CIEDE2000 of the cube's material against the color, sums over 5 nm."""
+
+
+class Relit(NamedTuple):
+    """How colors look under n lights; arrays of shape (n, ...) or (n, ..., 3), NaN where not defined."""
+
+    xyz: NDArray[np.float64]
+    """XYZ; Y = 1 is white under each light, but under one that nobody can adapt to, such as an
+    ultraviolet lamp: there it is white under the contract's light, at equal power."""
+    lab: NDArray[np.float64]
+    """CIELAB relative to ``white``."""
+    rgb: NDArray[np.float64]
+    """Linear RGB in the contract's space; not limited to 0 to 1."""
+    de2000: NDArray[np.float64]
+    """CIEDE2000 from the color under the contract's light, each as seen by an observer adapted to the
+    light."""
+    fluorescent_share: NDArray[np.float64]
+    """Share of Y that dyes emit, 0 to 1."""
+    whiteness: NDArray[np.float64]
+    """Whiteness of the CIE, for whites under light like D65."""
+    tint: NDArray[np.float64]
+    """Tint of the CIE, where ``whiteness`` is defined."""
+    white: NDArray[np.float64]
+    """XYZ of what the observer sees as white; shape (n, 3)."""
+    is_adapted: NDArray[np.bool_]
+    """Whether that is the white of the light; shape (n,)."""
 
 
 @dataclass(frozen=True)
@@ -358,6 +384,35 @@ class Cube:
         array = within(rgb, outside)
         colors = self._colors_under(light, scale, step_nm)
         return colors.rgb(single_rows(array), threads).reshape(array.shape)
+
+    def relight(
+        self,
+        rgb: ArrayLike,
+        lights: Sequence[Any],
+        *,
+        observer: Any = None,
+        threads: Threads = None,
+    ) -> Relit:
+        """How colors look under lights, with all numbers of ``upglow relight``, in double precision.
+
+        ``rgb`` is linear RGB of shape (..., 3), 0 to 1. Each of the n ``lights`` is an `Illuminant`, or what one
+        is made from; ``observer`` is an `Observer` or what one is made from, the contract's by default.
+        """
+        array = rgb_array(rgb).astype(np.float64, copy=False)
+        refuse_outside(array, to_fit=False)
+        made = [Illuminant(light) for light in lights]
+        for light in made:
+            if missing := self._native.missing_ultraviolet(light._native):
+                warnings.warn(missing, stacklevel=2)
+        seer = self._contract.observer if observer is None else Observer(observer)
+        natives = [light._native for light in made]
+        found, white, is_adapted = _upglow.relight(
+            self._native, rows(array), natives, seer._native, threads
+        )
+        shape = (len(made), *array.shape[:-1])
+        numbers = found.reshape(*shape, 13)
+        triples = (numbers[..., k : k + 3] for k in (0, 3, 6))
+        return Relit(*triples, *(numbers[..., k] for k in (9, 10, 11, 12)), white, is_adapted)
 
     def check(self, rgb: ArrayLike, *, threads: Threads = None) -> CubeCheck:
         """What kind of material can reproduce colors, and how far this cube's are from them.
