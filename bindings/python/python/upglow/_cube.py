@@ -411,8 +411,17 @@ class Cube:
         )
         shape = (len(made), *array.shape[:-1])
         numbers = found.reshape(*shape, 13)
-        triples = (numbers[..., k : k + 3] for k in (0, 3, 6))
-        return Relit(*triples, *(numbers[..., k] for k in (9, 10, 11, 12)), white, is_adapted)
+        return Relit(
+            xyz=numbers[..., 0:3],
+            lab=numbers[..., 3:6],
+            rgb=numbers[..., 6:9],
+            de2000=numbers[..., 9],
+            fluorescent_share=numbers[..., 10],
+            whiteness=numbers[..., 11],
+            tint=numbers[..., 12],
+            white=white,
+            is_adapted=is_adapted,
+        )
 
     def check(self, rgb: ArrayLike, *, threads: Threads = None) -> CubeCheck:
         """What kind of material can reproduce colors, and how far this cube's are from them.

@@ -38,7 +38,7 @@ const HEIGHT: f64 = 44.0;
 /// Sides of the mark of a color outside sRGB, a triangle in a corner.
 const MARK: f64 = 13.0;
 /// Narrower pages would cut the title and the notes.
-const LEAST_WIDTH: f64 = 560.0;
+const LEAST_WIDTH: f64 = 670.0;
 
 /// The chart as the text of an SVG file.
 pub(crate) fn draw(chart: &Chart) -> String {
