@@ -61,13 +61,13 @@ class DonaldsonMatrix:
         unit: Literal["per band", "per nm"],
         reflectance: Sequence[tuple[float, float]] | None = None,
     ) -> None:
-        axes = [
-            _doubles(*axis, 1)
-            for axis in (("incident_nm", incident_nm), ("outgoing_nm", outgoing_nm))
-        ]
+        incident = _doubles("incident_nm", incident_nm, 1)
+        outgoing = _doubles("outgoing_nm", outgoing_nm, 1)
         samples = None if reflectance is None else [(float(nm), float(r)) for nm, r in reflectance]
         shares = _doubles("values", values, 2)
-        self._native = _upglow.DonaldsonMatrix.from_samples(*axes, shares, unit, samples)
+        self._native = _upglow.DonaldsonMatrix.from_samples(
+            incident, outgoing, shares, unit, samples
+        )
 
     @classmethod
     def _of(cls, native: _upglow.DonaldsonMatrix) -> DonaldsonMatrix:
