@@ -155,11 +155,12 @@ fn python_for_tests(root: &Path) -> Result<(), StepError> {
 }
 
 fn quick_tests(root: &Path) -> Result<(), StepError> {
-    finish_aloud(tests(root, "test --workspace")?)
+    finish_aloud(tests(root, "test --workspace --features upglow-cli/explore")?)
 }
 
 fn slow_tests(root: &Path) -> Result<(), StepError> {
-    let mut command = tests(root, "test --workspace -- --ignored slow_")?;
+    let mut command =
+        tests(root, "test --workspace --features upglow-cli/explore -- --ignored slow_")?;
     command.env(SLOW_VARIABLE, "1");
     finish_aloud(command)
 }

@@ -6,8 +6,9 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// The packages whose programs the examples of docs/guide.md and the tests of the bindings run.
-const PROGRAM_PACKAGES: [&str; 2] = ["upglow-cli", "upglow-study"];
+/// The packages whose programs the examples of docs/guide.md and the tests of the bindings run, with every
+/// command.
+const PROGRAMS: [&str; 2] = ["upglow-cli --features explore", "upglow-study"];
 
 /// One step of the check.
 #[derive(Clone, Copy, Debug)]
@@ -156,10 +157,10 @@ pub(crate) fn target_dir(root: &Path) -> Result<PathBuf, StepError> {
     Ok(root.join(metadata["target_directory"].as_str().unwrap_or("target")))
 }
 
-/// Builds the programs as a user would; the folder they lie in.
+/// Builds the programs as a user would, with every command; the folder they lie in.
 pub(crate) fn release_bin_dir(root: &Path) -> Result<PathBuf, StepError> {
-    for package in PROGRAM_PACKAGES {
-        finish(cargo(root, &format!("build --release --package {package}")))?;
+    for program in PROGRAMS {
+        finish(cargo(root, &format!("build --release --package {program}")))?;
     }
     Ok(target_dir(root)?.join("release"))
 }

@@ -69,6 +69,9 @@ pub(crate) enum Command {
     /// Explore a cube in a browser: pick colors, see their spectra, light them, build other cubes
     #[cfg(feature = "explore")]
     Explore(ExploreArgs),
+    /// Explore a cube in a browser; in builds with the feature explore
+    #[cfg(not(feature = "explore"))]
+    Explore(MovedArgs),
     /// Draw example pictures to try the other commands on
     Examples(ExamplesArgs),
     /// Moved to the program `upglow-study`
@@ -88,7 +91,7 @@ pub(crate) struct LightArgs {
     pub(crate) ends: Option<Ends>,
 }
 
-/// The arguments of a command that is now in another program.
+/// The arguments of a command that is in another program or build.
 #[derive(Clone, Debug, clap::Args)]
 #[command(disable_help_flag = true)]
 pub(crate) struct MovedArgs {

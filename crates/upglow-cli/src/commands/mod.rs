@@ -39,11 +39,17 @@ pub(crate) fn run(Args { command, console }: Args) -> Result<(), Failure> {
         Command::Lint(args) => lint::run(&args, &console),
         #[cfg(feature = "explore")]
         Command::Explore(args) => explore::run(&args, &console),
+        #[cfg(not(feature = "explore"))]
+        Command::Explore(_) => Err(Failure::option("explore", WITHOUT_SERVER)),
         Command::Examples(args) => examples::run(&args, &console),
         Command::Figures(_) => Err(moved("figures")),
         Command::Reproduce(_) => Err(moved("reproduce")),
     }
 }
+
+#[cfg(not(feature = "explore"))]
+const WITHOUT_SERVER: &str = "not in this build, run \
+    `cargo install --path crates/upglow-cli --features explore`, or `upglow export CUBE cube.html`";
 
 /// Names the program that now has the command.
 fn moved(command: &str) -> Failure {
