@@ -1,12 +1,10 @@
 //! What the page knows of a cube: its shader's files, colors of its nodes, and the lights.
 
-use std::collections::HashMap;
-
 use rayon::prelude::*;
-use safetensors::Dtype;
-use safetensors::tensor::TensorView;
 use serde_json::{Value, json};
+use upglow::tensor::Tensor;
 use upglow::{Cube, ModelOnGrid};
+use upglow_color::rounding::to_single;
 use upglow_color::{Adaptation, Contract, Grid, RgbSpace};
 use upglow_fit::{CubeSummary, FitOptionsError};
 use upglow_shader::{Language, Shader, ShaderError};
@@ -57,13 +55,10 @@ impl CubeData {
             .iter()
             .map(|light| ShownLight::new(cube.contract(), light))
             .collect();
-        let mut tensors = vec![Tensor::bytes("textures", textures)];
+        let mut tensors = vec![Tensor::bytes("textures", &[textures.len()], textures)];
         tensors.extend(node_tensors(cube));
         tensors.extend(light_tensors(&shown));
-        let metadata = HashMap::from([(NAME.into(), description(cube, name, &shown).to_string())]);
-        let views = tensors.iter().map(|tensor| (tensor.name, tensor.view()));
-        let arrays = safetensors::serialize(views, Some(metadata))
-            .expect("names and metadata are plain text");
+        let arrays = Tensor::file(&tensors, NAME, description(cube, name, &shown).to_string());
         Ok(Self { script, shader, arrays })
     }
 
@@ -127,7 +122,10 @@ fn node_tensors(cube: &Cube) -> [Tensor; 2] {
     let xyz: Vec<f64> =
         (0..count).into_par_iter().flat_map_iter(|i| sums.color(material(i)).0).collect();
     let dose = (0..count).map(|i| material(i).fluorescence.dose());
-    [Tensor::singles("node_xyz", &[count, 3], xyz), Tensor::singles("node_dose", &[count], dose)]
+    [
+        Tensor::singles("node_xyz", &[count, 3], xyz.into_iter().map(to_single)),
+        Tensor::singles("node_dose", &[count], dose.map(to_single)),
+    ]
 }
 
 /// What is summed under each light. The first is the contract's own.
@@ -148,44 +146,9 @@ fn light_tensors(lights: &[ShownLight]) -> [Tensor; 5] {
         Tensor::singles(
             "lights_power",
             &[count, Grid::FINE.len()],
-            lights.iter().flat_map(|light| light.power.iter().copied()),
+            lights.iter().flat_map(|light| light.power.iter().copied().map(to_single)),
         ),
     ]
-}
-
-/// One array.
-#[derive(Debug)]
-struct Tensor {
-    name: &'static str,
-    dtype: Dtype,
-    shape: Vec<usize>,
-    bytes: Vec<u8>,
-}
-
-impl Tensor {
-    fn bytes(name: &'static str, bytes: Vec<u8>) -> Self {
-        Self { name, dtype: Dtype::U8, shape: vec![bytes.len()], bytes }
-    }
-
-    fn singles(name: &'static str, shape: &[usize], values: impl IntoIterator<Item = f64>) -> Self {
-        let single = |value| upglow_color::rounding::to_single(value).to_le_bytes();
-        let bytes = values.into_iter().flat_map(single).collect();
-        Self { name, dtype: Dtype::F32, shape: shape.into(), bytes }
-    }
-
-    fn doubles<'v>(
-        name: &'static str,
-        shape: &[usize],
-        values: impl IntoIterator<Item = &'v f64>,
-    ) -> Self {
-        let bytes = values.into_iter().flat_map(|value| value.to_le_bytes()).collect();
-        Self { name, dtype: Dtype::F64, shape: shape.into(), bytes }
-    }
-
-    fn view(&self) -> TensorView<'_> {
-        TensorView::new(self.dtype, self.shape.clone(), &self.bytes)
-            .expect("arrays are as long as their shapes")
-    }
 }
 
 #[cfg(test)]

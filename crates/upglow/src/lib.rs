@@ -40,6 +40,8 @@ mod material;
 mod packed;
 #[cfg(test)]
 mod random;
+#[doc(hidden)]
+pub mod tensor;
 
 pub use aside::Aside;
 pub use bispectral::{Bispectral, Draw, Sample};

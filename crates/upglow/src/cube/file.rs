@@ -5,7 +5,6 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use safetensors::tensor::TensorView;
 use safetensors::{Dtype, SafeTensors};
 use sha2::{Digest, Sha256};
 use upglow_color::{Grid, Spectrum};
@@ -16,6 +15,7 @@ use crate::cube::header::{CubeCurves, ENTRY, Header};
 use crate::cube::plain_json::PlainJson;
 use crate::cube::{Cube, CubeError, Node};
 use crate::material::model::Model;
+use crate::tensor::Tensor;
 
 const REFLECTANCE: &str = "reflectance";
 const DYE: &str = "dye";
@@ -26,40 +26,6 @@ const ILLUMINANT: &str = "illuminant";
 const OBSERVER: &str = "observer";
 const DYE_CURVES: &str = "dye_curves";
 const CHECKSUM: &str = "sha256";
-
-/// One array of the file.
-#[derive(Clone, Debug)]
-struct Tensor {
-    name: &'static str,
-    dtype: Dtype,
-    shape: Vec<usize>,
-    bytes: Vec<u8>,
-}
-
-impl Tensor {
-    fn singles(name: &'static str, shape: &[usize], values: impl Iterator<Item = f32>) -> Self {
-        let bytes = values.flat_map(f32::to_le_bytes).collect();
-        Self { name, dtype: Dtype::F32, shape: shape.into(), bytes }
-    }
-
-    fn doubles<'v>(
-        name: &'static str,
-        shape: &[usize],
-        values: impl Iterator<Item = &'v f64>,
-    ) -> Self {
-        let bytes = values.flat_map(|v| v.to_le_bytes()).collect();
-        Self { name, dtype: Dtype::F64, shape: shape.into(), bytes }
-    }
-
-    fn bytes(name: &'static str, shape: &[usize], bytes: Vec<u8>) -> Self {
-        Self { name, dtype: Dtype::U8, shape: shape.into(), bytes }
-    }
-
-    fn view(&self) -> TensorView<'_> {
-        TensorView::new(self.dtype, self.shape.clone(), &self.bytes)
-            .expect("arrays are as long as their shapes")
-    }
-}
 
 impl Cube {
     /// The content of the cube's file.
@@ -72,9 +38,7 @@ impl Cube {
         let content = tensors.iter().map(|t| (t.name, t.dtype, &t.shape[..], &t.bytes[..]));
         let checksum = checksum(&header, content);
         tensors.push(Tensor::bytes(CHECKSUM, &[checksum.len()], checksum));
-        let metadata = HashMap::from([(ENTRY.to_owned(), header)]);
-        let views = tensors.iter().map(|tensor| (tensor.name, tensor.view()));
-        safetensors::serialize(views, Some(metadata)).expect("names and metadata are plain text")
+        Tensor::file(&tensors, ENTRY, header)
     }
 
     /// The file's header as JSON: contract, model and fit, without the curves.
@@ -527,9 +491,7 @@ mod tests {
         let content = tensors.iter().map(|t| (t.name, t.dtype, &t.shape[..], &t.bytes[..]));
         let sum = checksum(&header, content);
         tensors.push(Tensor::bytes(CHECKSUM, &[sum.len()], sum));
-        let metadata = HashMap::from([(ENTRY.to_owned(), header)]);
-        let views = tensors.iter().map(|t| (t.name, t.view()));
-        Cube::from_bytes(&safetensors::serialize(views, Some(metadata)).unwrap())
+        Cube::from_bytes(&Tensor::file(&tensors, ENTRY, header))
     }
 
     #[test]
