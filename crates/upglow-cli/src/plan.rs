@@ -100,23 +100,13 @@ pub(crate) fn lights_to_see(
     let given = lights("--light", texts, args)?;
     if given.is_empty() {
         let standard = LIGHTS.iter().filter_map(|name| Illuminant::named(name).ok());
-        return Ok(standard.chain([ultraviolet_lamp()]).collect());
+        return Ok(standard.chain([Illuminant::mineral_lamp()]).collect());
     }
     Ok(given)
 }
 
 /// The standard lights.
 const LIGHTS: [&str; 3] = ["D65", "A", "E"];
-
-/// An ultraviolet lamp as used for minerals and banknotes: only fluorescence is visible under it.
-const LAMP_PEAK_NM: f64 = 365.0;
-const LAMP_FWHM_NM: f64 = 12.0;
-
-/// That lamp.
-pub(crate) fn ultraviolet_lamp() -> Illuminant {
-    let name = format!("{LAMP_PEAK_NM} nm lamp");
-    Illuminant::line(&name, LAMP_PEAK_NM, LAMP_FWHM_NM).expect("its power reaches beyond 360 nm")
-}
 
 /// The light of a name or file, given with `option`.
 pub(crate) fn light(option: &str, text: &str, args: &LightArgs) -> Result<Illuminant, Failure> {

@@ -227,6 +227,14 @@ impl Illuminant {
         Self { given_nm: [first_nm, last_nm], ..light }
     }
 
+    /// An ultraviolet lamp as used for minerals and banknotes, under which only fluorescence is visible: a line
+    /// at 365 nm, 12 nm wide at half of its height.
+    pub fn mineral_lamp() -> Self {
+        let [peak_nm, fwhm_nm] = [365.0, 12.0];
+        Self::line(&format!("{peak_nm} nm lamp"), peak_nm, fwhm_nm)
+            .expect("its power reaches beyond 360 nm")
+    }
+
     /// A lamp with one Gaussian line, like an ultraviolet LED: peak and full width at half maximum in
     /// nm, power 100 at the peak. The 1 nm samples of a line narrower than 2 nm are means that keep its
     /// power.

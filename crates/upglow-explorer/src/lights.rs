@@ -2,9 +2,6 @@
 
 use upglow_color::{Adaptation, Contract, Grid, Illuminant, Matrix3, RgbSpace, SeenUnder};
 
-/// The peak and the width of an ultraviolet lamp for minerals and banknotes, nm.
-const LAMP_NM: [f64; 2] = [365.0, 12.0];
-
 /// Ultraviolet light ends here, nm: what the page scales, and what a filter takes away.
 pub(crate) const ULTRAVIOLET_BELOW_NM: f64 = 400.0;
 
@@ -16,13 +13,8 @@ const SHOWN: [&str; 10] = ["D65", "D60", "D55", "D50", "A", "E", "FL2", "FL11", 
 pub(crate) fn lights(contract: &Contract) -> Vec<Illuminant> {
     let own = &contract.illuminant;
     let built_in = SHOWN.iter().filter_map(|name| Illuminant::named(name).ok());
-    let others = built_in.chain(filtered_daylight()).chain(lamp());
+    let others = built_in.chain(filtered_daylight()).chain([Illuminant::mineral_lamp()]);
     std::iter::once(own.clone()).chain(others.filter(|light| light.name() != own.name())).collect()
-}
-
-fn lamp() -> Option<Illuminant> {
-    let [peak_nm, fwhm_nm] = LAMP_NM;
-    Illuminant::line(&format!("{peak_nm} nm lamp"), peak_nm, fwhm_nm).ok()
 }
 
 /// D65 without ultraviolet.

@@ -17,7 +17,7 @@ mod table_dyes;
 use crate::problem::parabola::MIDDLE_NM;
 use goal::{MatrixDifference, MatrixGoal};
 use own_dyes::{DyeInFilm, emitting_dyes, film_on_white};
-use separation::separated;
+use separation::{Emitter, separated};
 use table_dyes::{Found, TableDyes};
 
 /// Which dyes a fitted material may have.
@@ -100,9 +100,9 @@ pub struct MatrixFit {
 }
 
 /// The material of the model `film` that comes nearest to a measured matrix: in the colors of both under
-/// daylight, parts of it, incandescent light, equal energy and ultraviolet lamps; for dyes of the matrix also in its
-/// elements outside of the diagonal. The colors are those of all that was measured, with its noise. Each absorbed photon gives back as many as the quantum yield
-/// says.
+/// daylight, parts of it, incandescent light, equal energy and ultraviolet lamps; for dyes of the matrix also in
+/// its elements outside of the diagonal. The colors are those of all that was measured, with its noise. Each
+/// absorbed photon gives back as many as the quantum yield says.
 ///
 /// # Errors
 ///
@@ -148,13 +148,13 @@ pub fn fit_matrix(
         MatrixDyes::Measured if is_measured && two => {
             return Err(MatrixFitError::Reflectance { found: "two emitting dyes" });
         }
-        MatrixDyes::Measured if two => found.push(fitting.on_sigmoid(2)),
         MatrixDyes::Measured => {
-            if *reflectance != Some(MatrixReflectance::Sigmoid) {
-                found.push(fitting.on_white());
+            let emitters = separated(measured, &fitting.goal, count.unwrap_or(1));
+            if !two && *reflectance != Some(MatrixReflectance::Sigmoid) {
+                found.push(fitting.on_white(&emitters));
             }
             if !is_measured {
-                found.push(fitting.on_sigmoid(1));
+                found.push(fitting.on_sigmoid(&emitters));
             }
         }
     }
@@ -177,18 +177,16 @@ struct Fitting<'a> {
 
 impl Fitting<'_> {
     /// One dye of the matrix and its measured reflectance.
-    fn on_white(&self) -> Result<MatrixFit, MatrixFitError> {
-        let emitters = separated(self.measured, &self.goal, 1);
+    fn on_white(&self, emitters: &[Emitter]) -> Result<MatrixFit, MatrixFitError> {
         let emitter = emitters.first().filter(|emitter| emitter.is_above_noise(self.measured));
         let dyes = film_on_white(self.measured, emitter);
         MatrixFit::new(self.measured, Sigmoid::flat(1.0), dyes)
     }
 
     /// Dyes of the matrix over a sigmoid.
-    fn on_sigmoid(&self, count: usize) -> Result<MatrixFit, MatrixFitError> {
-        let emitters = separated(self.measured, &self.goal, count);
+    fn on_sigmoid(&self, emitters: &[Emitter]) -> Result<MatrixFit, MatrixFitError> {
         let of_yield = |quantum_yield| {
-            let dyes = emitting_dyes(self.measured, &emitters, quantum_yield);
+            let dyes = emitting_dyes(self.measured, emitters, quantum_yield);
             let starts = |of: fn(&DyeInFilm) -> f64| Some([of(dyes.first()?), of(dyes.last()?)]);
             let densities = starts(|(_, density)| *density)?;
             let yields = starts(|(dye, _)| dye.quantum_yield.unwrap_or(1.0))?;
@@ -360,7 +358,7 @@ pub(crate) mod tests {
     fn lights() -> Vec<Illuminant> {
         let named = |name| Illuminant::named(name).unwrap();
         let cut = named("D65").cut_below("D65 from 400 nm", 400.0).unwrap();
-        let lamp = Illuminant::line("365 nm lamp", 365.0, 12.0).unwrap();
+        let lamp = Illuminant::mineral_lamp();
         vec![named("A"), named("E"), cut, named("FL2"), named("HP5"), lamp]
     }
 

@@ -232,7 +232,7 @@ mod tests {
         let magenta = [LinearRgb([0.9, 0.0, 0.9])];
         let relighting = Relighting::of_colors(&cube, &magenta).unwrap();
         let seen_by = relighting.seen_by(&cube.contract().observer).unwrap();
-        let lamp = Illuminant::line("lamp", 365.0, 12.0).unwrap();
+        let lamp = Illuminant::mineral_lamp();
         let view = seen_by.under(&lamp);
         assert!(!view.seen.is_adapted);
         let Appearance { de2000, fluorescent_share, whiteness, .. } = view.appearances[0];

@@ -29,7 +29,7 @@ fn lights(args: &FitMatrixArgs) -> Result<Vec<Illuminant>, Failure> {
     let named = |name| Illuminant::named(name).expect("the light is built in");
     let cut = named("D65").cut_below("D65 from 400 nm", 400.0).expect("it is visible");
     let [day, a, e, fl2, hp5] = ["D65", "A", "E", "FL2", "HP5"].map(named);
-    Ok(vec![day, a, e, cut, fl2, hp5, plan::ultraviolet_lamp()])
+    Ok(vec![day, a, e, cut, fl2, hp5, Illuminant::mineral_lamp()])
 }
 
 pub(crate) fn run(args: &FitMatrixArgs, console: &Console) -> Result<(), Failure> {
@@ -45,7 +45,11 @@ pub(crate) fn run(args: &FitMatrixArgs, console: &Console) -> Result<(), Failure
     let dyes = match args.dyes.as_str() {
         "measured" => MatrixDyes::Measured,
         "all" => MatrixDyes::Of(MeasuredDye::all().collect()),
-        text => MatrixDyes::Of(plan::matrix_dyes(text)?),
+        text => MatrixDyes::Of(plan::matrix_dyes(text).map_err(|failure| match failure {
+            // Of the words, the plan knows those of `upglow build`.
+            Failure::Usage(_) => failure.with(", or measured or all"),
+            failure => failure,
+        })?),
     };
     let options = MatrixFitOptions { dyes, count: args.count, reflectance: args.reflectance };
     let lights = lights(args)?;

@@ -8,7 +8,7 @@ use super::svg::{CAPTION_LETTERS, FAINT, INK, at, file, hundredths, line, outlin
 const WIDTH: f64 = 1120.0;
 const HEIGHT: f64 = 840.0;
 
-/// Left edges of the two maps, and the edge of what stands beside the chart.
+/// Left edges of the two maps, and below that of their scale.
 const MAPS: [f64; 2] = [78.0, 560.0];
 const MAP_TOP: f64 = 52.0;
 const MAP_SIZE: [f64; 2] = [400.0, 336.0];

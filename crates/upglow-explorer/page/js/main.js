@@ -194,9 +194,7 @@ async function start() {
     });
     addEventListener("hashchange", () => set(takeAddress()));
     byId("open-help").addEventListener("click", () => byId("help").showModal());
-    app.cube = null;
-    app.useCube(cube);
-    app.other = null;
+    app.useCube(cube, null);
     document.documentElement.dataset.screen = SCREEN_NAME;
 }
 

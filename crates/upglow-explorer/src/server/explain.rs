@@ -30,10 +30,11 @@ pub(super) struct Explanation {
     material: NearestColor,
     /// The material that the cube's options give to exactly this color.
     fitted: Option<Fitted>,
-    /// Why there is none.
+    /// Why `fitted` is null.
     fitted_refusal: Option<String>,
     /// The nearest reflectance within the cube's slope limit.
     passive: Option<Fitted>,
+    /// Why `passive` is null.
     passive_refusal: Option<String>,
 }
 
