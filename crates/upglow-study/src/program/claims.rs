@@ -20,9 +20,9 @@ use upglow_color::{Metric, choices};
 use upglow_fit::{BuildError, Watch};
 use upglow_study::konig2020;
 
-use crate::bispectral::Measured;
 use crate::cubes::{Cubes, StudyCube};
 use crate::field::Field;
+use crate::samples::Sample;
 
 /// A statement of the paper and what we measured.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -201,7 +201,7 @@ impl Fields {
 /// [`BuildError`] if the resolution is out of range or `watch` stopped the work.
 pub(crate) fn claims(
     cubes: &Cubes,
-    measured: &[Measured],
+    measured: &[Sample],
     watch: &dyn Watch,
 ) -> Result<Vec<Claim>, BuildError> {
     let fields = Fields::of(cubes, watch)?;

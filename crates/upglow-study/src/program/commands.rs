@@ -1,7 +1,7 @@
 //! The commands, one per file.
 
 mod figures;
-mod relight;
+pub(crate) mod relight;
 mod reproduce;
 mod rule;
 

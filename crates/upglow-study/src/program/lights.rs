@@ -1,22 +1,29 @@
-//! The lights that materials are not fitted under.
+//! The lights that materials are seen under.
+
+use std::ops::Range;
 
 use upglow_color::Illuminant;
-use upglow_fit::ultraviolet_lamp;
 
 /// Below this wavelength, nm, daylight without ultraviolet has no power: that of D65 behind a filter.
 const CUT_NM: f64 = 400.0;
 
-/// Incandescent light, equal energy, two fluorescent lamps, high-pressure sodium, a white LED, and an
-/// ultraviolet lamp.
-pub(crate) fn lamps() -> Vec<Illuminant> {
-    let named = ["A", "E", "FL2", "FL11", "HP1", "LED-B3"].map(named);
-    named.into_iter().chain([ultraviolet_lamp()]).collect()
+/// Which of [`lights`] are neither D65 nor a part of it.
+pub(crate) const SEVEN: Range<usize> = 1..8;
+
+/// Daylight, under which colors are known. [`SEVEN`] other lights: incandescent, equal energy, two fluorescent lamps, a
+/// metal halide lamp, a white LED, and daylight behind a window. Daylight without ultraviolet, and ultraviolet
+/// alone.
+pub(crate) fn lights() -> Vec<Illuminant> {
+    let mut lights = ["D65", "A", "E", "FL2", "FL11", "HP5", "LED-B3", "ID65"].map(named).to_vec();
+    lights.extend([daylight_without_ultraviolet(), Illuminant::mineral_lamp()]);
+    lights
 }
 
-/// Incandescent light, equal energy, and daylight without ultraviolet: what is measured down to 300 nm and
-/// by 10 nm only is seen under smooth lights.
+/// Daylight, incandescent light, equal energy, and daylight without ultraviolet.
 pub(crate) fn smooth_lights() -> Vec<Illuminant> {
-    vec![named("A"), named("E"), daylight_without_ultraviolet()]
+    let mut lights = ["D65", "A", "E"].map(named).to_vec();
+    lights.push(daylight_without_ultraviolet());
+    lights
 }
 
 fn named(name: &str) -> Illuminant {

@@ -20,6 +20,7 @@ mod rule;
 mod samples;
 mod spread;
 mod svg;
+mod ways;
 
 use std::process::ExitCode;
 

@@ -13,9 +13,9 @@ use upglow_fit::{
     random_rgb,
 };
 
-use crate::relight::Way;
-use crate::samples::{SampleSet, pointers_border};
+use crate::samples::{Sample, SampleSet, pointers_border};
 use crate::spread::Spread;
+use crate::ways::OneColor;
 
 /// Seed of the random colors and nodes.
 const SEED: u64 = 0;
@@ -70,9 +70,10 @@ pub(crate) fn cube(
 /// The colors of surfaces, and random ones of sRGB, under D65, by name.
 pub(crate) fn colors(random: usize) -> [(&'static str, Vec<Xyz>); 4] {
     let d65 = Contract::default();
+    let white = d65.on(Grid::FIT).white();
     let [objects, paints] = [SampleSet::object_colors(), SampleSet::paints()].map(|set| {
-        let colorimetry = d65.on(set.grid);
-        (set.name, set.samples.iter().map(|sample| sample.color(&colorimetry)).collect())
+        let color = |sample: &Sample| sample.color(&d65.illuminant, white);
+        (set.name, set.samples.iter().map(color).collect())
     });
     let srgb = contract_of("srgb").on(Grid::FIT);
     let random = random_srgb(random).map(|rgb| srgb.xyz_from_rgb(rgb)).collect();
@@ -85,8 +86,8 @@ pub(crate) fn colors(random: usize) -> [(&'static str, Vec<Xyz>); 4] {
 }
 
 /// Which of some colors get a dye, each fitted by itself.
-pub(crate) fn dyed_alone((name, colors): &(&'static str, Vec<Xyz>), way: &Way) -> Dyed {
-    let glows = |color: &Xyz| way.material(*color).fluorescence != Fluorescence::None;
+pub(crate) fn dyed_alone((name, colors): &(&'static str, Vec<Xyz>), way: &OneColor) -> Dyed {
+    let glows = |color: &Xyz| way.fit(*color).fluorescence != Fluorescence::None;
     let found: Vec<_> = colors.par_iter().map(|color| (*color, glows(color))).collect();
     Dyed::new(name, &found)
 }

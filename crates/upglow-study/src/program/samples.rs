@@ -1,33 +1,48 @@
 //! Measured surfaces: sets of samples whose colors under any light are known.
 
-use upglow_color::{Adaptation, Colorimetry, Contract, Grid, Lab, Spectrum, Xyz};
-
-use crate::bispectral::Measured;
+use upglow_color::{
+    Adaptation, BispectralUnit, Contract, ContractError, DonaldsonMatrix, Grid, Illuminant, Lab,
+    MatrixSums, Xyz,
+};
 
 /// A measured surface.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Sample {
-    /// A reflectance from 380 to 780 nm; below and above it is that of the end.
-    ///
-    /// # Source
-    ///
-    /// `cie015` recommends the nearest measured value for what is not measured.
-    Reflectance(Spectrum),
-    /// What of each band of light leaves in each other band.
-    Bispectral(Measured),
+pub(crate) struct Sample {
+    /// The column of its table, or the name of its file without the suffix.
+    pub(crate) name: String,
+    matrix: DonaldsonMatrix,
 }
 
+/// What is promised of every sample.
+const IS_SEEN: &str = "D65 reaches the matrix";
+
 impl Sample {
-    /// The color under the light of `colorimetry`, which is on [`SampleSet::grid`].
-    pub(crate) fn color(&self, colorimetry: &Colorimetry) -> Xyz {
-        match self {
-            Self::Reflectance(curve) => {
-                let [first, last] = [curve.grid().first_nm(), curve.grid().last_nm()];
-                let at = |nm: &f64| curve.at(nm.clamp(f64::from(first), f64::from(last)));
-                colorimetry.xyz_from_reflectance(colorimetry.wavelengths_nm().iter().map(at))
-            }
-            Self::Bispectral(measured) => measured.color(colorimetry),
-        }
+    /// A surface from what of each band of light leaves in each band.
+    ///
+    /// # Errors
+    ///
+    /// [`ContractError`] if nothing of D65 is seen on the axes of the matrix.
+    pub(crate) fn try_new(name: String, matrix: DonaldsonMatrix) -> Result<Self, ContractError> {
+        matrix.seen_under(&Contract::default(), &Illuminant::default())?;
+        Ok(Self { name, matrix })
+    }
+
+    /// What of each band of light leaves in each band.
+    pub(crate) fn matrix(&self) -> &DonaldsonMatrix {
+        &self.matrix
+    }
+
+    /// The color under a light, for an observer who sees this `white`. Sums over other wavelengths than
+    /// those of the sample have slightly other whites; in each a gray is a gray.
+    pub(crate) fn color(&self, light: &Illuminant, white: Xyz) -> Xyz {
+        let sums = self.sums(light);
+        let adapted = Adaptation::Bradford.target_from_source(sums.white(), white);
+        Xyz(adapted * sums.color(&self.matrix).0)
+    }
+
+    /// The sums under a light for an observer who is adapted to it, or to D65 if it is too dark for that.
+    pub(crate) fn sums(&self, light: &Illuminant) -> MatrixSums {
+        self.matrix.seen_under(&Contract::default(), light).expect(IS_SEEN)
     }
 }
 
@@ -37,8 +52,6 @@ pub(crate) struct SampleSet {
     /// What reports call it.
     pub(crate) name: &'static str,
     pub(crate) samples: Vec<Sample>,
-    /// The grid of the sums over their spectra.
-    pub(crate) grid: Grid,
 }
 
 impl SampleSet {
@@ -53,21 +66,31 @@ impl SampleSet {
     }
 
     /// Measured fluorescent materials.
-    pub(crate) fn fluorescent(measured: &[Measured]) -> Self {
-        let samples = measured.iter().cloned().map(Sample::Bispectral).collect();
-        Self { name: "fluorescent materials", samples, grid: Measured::GRID }
+    pub(crate) fn fluorescent(measured: &[Sample]) -> Self {
+        Self { name: "fluorescent materials", samples: measured.to_vec() }
     }
 
+    /// Surfaces of which no light leaves at another wavelength. Light arrives from 300 nm on, as for measured
+    /// fluorescent materials, so that a dye in their place shows.
     fn of_reflectances(name: &'static str, text: &str) -> Self {
-        let rows = rows(text);
-        let grid = Grid::try_new(380, 780, 5).expect("the wavelengths ascend");
-        let is_on_grid = grid.wavelengths_nm().eq(rows.iter().map(|row| row[0]));
-        assert!(is_on_grid, "the wavelengths of {name} are 380, 385 … 780 nm");
-        let curve = |column: usize| {
-            let values = rows.iter().map(|row| row[column]).collect();
-            Sample::Reflectance(Spectrum::new(grid, values).expect("the table fills the grid"))
+        let (names, rows) = table(text);
+        let nm: Vec<f64> = rows.iter().map(|row| row[0]).collect();
+        let dark_nm = (60..76).map(|fives| f64::from(5 * fives));
+        let incident_nm: Vec<f64> = dark_nm.chain(nm.iter().copied()).collect();
+        let dark = incident_nm.len() - nm.len();
+        let sample = |column: usize| {
+            let row = |o: usize| {
+                let mut row = vec![0.0; incident_nm.len()];
+                row[dark + o] = rows[o][column];
+                row
+            };
+            let values = (0..rows.len()).map(row).collect();
+            let (incident_nm, unit) = (incident_nm.clone(), BispectralUnit::PerBand);
+            let matrix = DonaldsonMatrix::try_new(incident_nm, nm.clone(), values, unit)
+                .expect("the table holds reflectances from 380 to 780 nm");
+            Sample::try_new(names[column].into(), matrix).expect(IS_SEEN)
         };
-        Self { name, samples: (1..rows[0].len()).map(curve).collect(), grid: Grid::FINE }
+        Self { name, samples: (1..names.len()).map(sample).collect() }
     }
 }
 
@@ -78,35 +101,25 @@ pub(crate) fn pointers_border(contract: &Contract) -> Vec<Xyz> {
     const C: Xyz = Xyz([0.980_74, 1.0, 1.182_32]);
     let white = contract.on(Grid::FIT).white();
     let adapted = Adaptation::Bradford.target_from_source(C, white);
-    let rows = rows(include_str!("../../data/pointer_gamut.csv"));
+    let (_, rows) = table(include_str!("../../data/pointer_gamut.csv"));
     let lab = rows.into_iter().map(|row| {
         let (sin, cos) = row[2].to_radians().sin_cos();
         Lab { l: row[0], a: row[1] * cos, b: row[1] * sin }
     });
-    lab.map(|lab| Xyz(adapted * xyz_from_lab(lab, C).0)).collect()
+    lab.map(|lab| Xyz(adapted * upglow_color::xyz_from_lab(lab, C).0)).collect()
 }
 
-/// The inverse of [`upglow_color::lab_from_xyz`].
-fn xyz_from_lab(lab: Lab, white: Xyz) -> Xyz {
-    let y = (lab.l + 16.0) / 116.0;
-    let f = [y + lab.a / 500.0, y, y - lab.b / 200.0];
-    Xyz([0, 1, 2].map(|k| {
-        let linear = 3.0 * (6.0_f64 / 29.0).powi(2) * (f[k] - 4.0 / 29.0);
-        white.0[k] * if f[k] > 6.0 / 29.0 { f[k].powi(3) } else { linear }
-    }))
-}
-
-/// The numbers of a table that is part of the program: its rows below comments and header.
-fn rows(text: &str) -> Vec<Vec<f64>> {
-    let lines = text.lines().filter(|line| !line.starts_with('#')).skip(1);
+/// A table that is part of the program: the names of its columns, and the numbers of its rows.
+fn table(text: &str) -> (Vec<&str>, Vec<Vec<f64>>) {
+    let mut lines = text.lines().filter(|line| !line.starts_with('#')).map(|line| line.split(','));
+    let names = lines.next().into_iter().flatten().collect();
     let number = |cell: &str| cell.parse().expect("the table holds numbers");
-    lines.map(|line| line.split(',').map(number).collect()).collect()
+    (names, lines.map(|cells| cells.map(number).collect()).collect())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use upglow_color::lab_from_xyz;
 
     #[test]
     fn the_tables_have_as_many_samples_as_their_names_say() {
@@ -119,9 +132,12 @@ mod tests {
     #[test]
     fn reflectances_are_shares() {
         for set in [SampleSet::object_colors(), SampleSet::paints()] {
-            for sample in &set.samples {
-                let Sample::Reflectance(curve) = sample else { panic!("{}", set.name) };
-                assert!(curve.values().iter().all(|r| (0.0..=1.0).contains(r)), "{sample:?}");
+            for Sample { name, matrix } in &set.samples {
+                for (o, row) in matrix.factors().iter().enumerate() {
+                    assert!((0.0..=1.0).contains(&row[16 + o]), "{name} {o}");
+                    assert!((row.iter().sum::<f64>() - row[16 + o]).abs() <= 0.0, "{name} {o}");
+                }
+                assert_eq!(matrix.diagonal_bands().count(), 81);
             }
         }
     }
@@ -129,24 +145,13 @@ mod tests {
     #[test]
     fn the_white_paint_has_the_published_color() {
         // ISO 17321-1's figures under D50 after the maker: L* 96.5, a* -0.4, b* 1.2; charts differ by 1.
-        let illuminant = upglow_color::Illuminant::named("D50").unwrap();
-        let colorimetry = Contract { illuminant, ..Contract::default() }.on(Grid::FINE);
-        let white = SampleSet::paints().samples[18].color(&colorimetry);
-        let Lab { l, a, b } = colorimetry.lab_from_xyz(white);
+        let light = Illuminant::named("D50").unwrap();
+        let white = Xyz([0.964_21, 1.0, 0.825_19]);
+        let color = SampleSet::paints().samples[18].color(&light, white);
+        let Lab { l, a, b } = upglow_color::lab_from_xyz(color, white);
         assert!(
             (l - 96.5).abs() < 1.5 && (a + 0.4).abs() < 1.0 && (b - 1.2).abs() < 2.0,
             "{l} {a} {b}"
         );
-    }
-
-    #[test]
-    fn lab_is_converted_both_ways() {
-        let white = Contract::default().on(Grid::FIT).white();
-        for lab in [[50.0, 40.0, -60.0], [3.0, 1.0, -2.0], [90.0, -20.0, 80.0]] {
-            let [l, a, b] = lab;
-            let found = lab_from_xyz(xyz_from_lab(Lab { l, a, b }, white), white);
-            // Rounding only.
-            assert!(found.de76(Lab { l, a, b }) < 1e-9, "{found:?}");
-        }
     }
 }

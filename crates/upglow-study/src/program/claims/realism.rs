@@ -7,13 +7,13 @@ use upglow_fit::{FitOptions, Method};
 use upglow_study::konig2020;
 
 use super::{ANALYTIC_WIDTHS, Claim, Number, Verdict};
-use crate::bispectral::Measured;
 use crate::lights::smooth_lights;
-use crate::relight::{Relit, Way};
-use crate::samples::SampleSet;
+use crate::relight::{LitSet, Relit};
+use crate::samples::{Sample, SampleSet};
 use crate::spread::Spread;
+use crate::ways::OneColor;
 
-pub(super) fn claim(measured: &[Measured]) -> Claim {
+pub(super) fn claim(measured: &[Sample]) -> Claim {
     let claim = Claim {
         id: "dyes-are-more-realistic",
         section: "5.2",
@@ -27,7 +27,7 @@ pub(super) fn claim(measured: &[Measured]) -> Claim {
     if measured.is_empty() { claim } else { judged(claim, measured) }
 }
 
-fn judged(claim: Claim, measured: &[Measured]) -> Claim {
+fn judged(claim: Claim, measured: &[Sample]) -> Claim {
     let analytic = |fwhm_nm| Model::Analytic(konig2020::analytic(fwhm_nm));
     let dyes = Model::Dyes(konig2020::dyes(Mixing::Pooled));
     let usual = konig2020::options(Metric::De2000, konig2020::SWEEPS);
@@ -97,18 +97,33 @@ struct Differences {
 }
 
 impl Differences {
-    fn of(model: &Model, options: FitOptions, measured: &[Measured]) -> Self {
-        let way = Way::try_new(model.name(), konig2020::contract(), model, options)
+    fn of(model: &Model, options: FitOptions, measured: &[Sample]) -> Self {
+        let way = OneColor::try_new(model.name(), &konig2020::contract(), model, options)
             .expect("the options are in range");
-        let relit = Relit::of(&SampleSet::fluorescent(measured), &way, &smooth_lights());
-        Self { others: relit.means(), d65: relit.home }
+        let (set, lights) = (SampleSet::fluorescent(measured), smooth_lights());
+        let relit = Relit::of(&LitSet::new(&set, &lights), &way);
+        Self { others: relit.means(0..lights.len()), d65: relit.under(0) }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bispectral::tests::half;
+    use upglow_color::{BispectralUnit, DonaldsonMatrix};
+
+    /// A material that reflects half of all light, and moves some of it from 400 nm to 500 nm.
+    fn half(moved: f64) -> Sample {
+        let nm: Vec<f64> = (30..=78).map(|tens| f64::from(10 * tens)).collect();
+        let factor = |o: f64, i: f64| match (i, o) {
+            _ if i == o => 0.5,
+            (400.0, 500.0) => moved,
+            _ => 0.0,
+        };
+        let rows = nm.iter().map(|&o| nm.iter().map(|&i| factor(o, i)).collect()).collect();
+        let unit = BispectralUnit::PerBand;
+        let matrix = DonaldsonMatrix::try_new(nm.clone(), nm, rows, unit).unwrap();
+        Sample::try_new("half".into(), matrix).unwrap()
+    }
 
     fn of_reflectance(moved: f64) -> Differences {
         let options = konig2020::options(Metric::De2000, konig2020::SWEEPS);
@@ -120,13 +135,13 @@ mod tests {
         assert_eq!(claim(&[]).verdict, Verdict::CannotBeJudged);
     }
 
-    /// The gray is fitted on sums over 5 nm and seen on sums over 10 nm.
-    const QUADRATURE: f64 = 0.05;
+    /// The color is fitted within this, ΔE00.
+    const MATCHED: f64 = 0.01;
 
     #[test]
     fn a_gray_without_fluorescence_looks_the_same_under_every_light() {
         let found = of_reflectance(0.0);
-        assert!(found.d65[0] < QUADRATURE && found.others[0] < QUADRATURE, "{found:?}");
+        assert!(found.d65[0] < MATCHED && found.others[0] < MATCHED, "{found:?}");
     }
 
     #[test]

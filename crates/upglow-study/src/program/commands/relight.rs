@@ -1,87 +1,110 @@
-//! `upglow-study relight`: materials made from the colors of surfaces, beside these under other lights.
+//! `upglow-study relight`: materials made of what is known of surfaces, beside these under other lights.
 
 use std::fmt::Write;
 
 use serde::Serialize;
-use upglow_color::Contract;
+use upglow_color::Illuminant;
 use upglow_fit::Watch;
-use upglow_terminal::{Bar, Console, Failure, Report};
+use upglow_terminal::{Console, Failure, Report};
 
 use crate::args::RelightArgs;
-use crate::bispectral::Measured;
-use crate::relight::{Relit, sets, ways};
+use crate::bispectral::read_folder;
+use crate::lights::{SEVEN, lights};
+use crate::relight::{LitSet, Relit, sets};
+use crate::samples::Sample;
 use crate::spread::Spread;
+use crate::ways::{Way, WholeMatrix, ways};
 
 #[derive(Clone, Debug, Serialize)]
-struct RelightReport {
-    sets: Vec<SetReport>,
+pub(crate) struct RelightReport {
+    pub(crate) sets: Vec<SetReport>,
 }
 
 #[derive(Clone, Debug, Serialize)]
-struct SetReport {
+pub(crate) struct SetReport {
     samples: &'static str,
     count: usize,
-    lights: Vec<String>,
     ways: Vec<WayReport>,
 }
 
 /// ΔE00 between samples and the materials of one way.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 struct WayReport {
     way: String,
     /// How many materials have a dye.
     dyed: usize,
-    contract: Mean,
-    lights: Vec<Mean>,
-    /// Of each sample's mean over the lights.
+    lights: Vec<LightReport>,
+    /// Of each sample's mean over the seven lights beside daylight, without those that the way was told of.
+    mean_of_seven: Mean,
+    /// The same over all lights.
+    mean: Mean,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct LightReport {
+    light: String,
+    /// Whether the way was told the color under this light.
+    told: bool,
+    #[serde(flatten)]
     mean: Mean,
 }
 
 /// A mean over samples.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 struct Mean {
     de2000: f64,
     standard_error: f64,
 }
 
 impl Mean {
-    fn of(values: impl IntoIterator<Item = f64>) -> Self {
+    fn of(values: Vec<f64>) -> Self {
         let Spread { mean, standard_error, .. } = Spread::of(values);
         Self { de2000: mean, standard_error }
     }
 }
 
 pub(super) fn run(args: &RelightArgs, console: &Console) -> Result<(), Failure> {
-    let folder = args.bispectral.as_deref();
-    let measured = folder.map(Measured::read_folder).transpose()?.unwrap_or_default();
+    let measured = read_folder(args.bispectral.as_deref())?;
     let report = console.work(args.threads, |bar| measure(&measured, bar))?;
     console.print(&report?)
 }
 
-fn measure(measured: &[Measured], bar: &Bar) -> Result<RelightReport, Failure> {
-    let ways = ways(&Contract::default());
+/// Every way on every set.
+///
+/// # Errors
+///
+/// [`Failure`] if `watch` stopped the work, or no material comes near to a measured one.
+pub(crate) fn measure(measured: &[Sample], watch: &dyn Watch) -> Result<RelightReport, Failure> {
+    let lights = lights();
+    let one_color = ways();
+    let whole = WholeMatrix::of(measured).map_err(|(name, error)| Failure::input(name, error))?;
     let mut reports = Vec::new();
-    for (set, lights) in sets(measured) {
-        let mut rows = Vec::with_capacity(ways.len());
-        for way in &ways {
-            if bar.stopped() {
+    for set in sets(measured) {
+        let mut rows = Vec::with_capacity(one_color.len() + 1);
+        let mut ways: Vec<&dyn Way> = one_color.iter().map(|way| way as &dyn Way).collect();
+        if set.samples == measured {
+            ways.push(&whole);
+        }
+        let lit = LitSet::new(&set, &lights);
+        for way in ways {
+            if watch.stopped() {
                 return Err(Failure::Stopped);
             }
-            let relit = Relit::of(&set, way, &lights);
+            let relit = Relit::of(&lit, way);
+            let light = |(k, light): (usize, &Illuminant)| LightReport {
+                light: light.name().to_owned(),
+                told: relit.told[k],
+                mean: Mean::of(relit.under(k)),
+            };
             rows.push(WayReport {
-                way: way.name.clone(),
+                way: way.name().to_owned(),
                 dyed: relit.dyed,
-                contract: Mean::of(relit.home.iter().copied()),
-                lights: relit.away.iter().map(|of| Mean::of(of.iter().copied())).collect(),
-                mean: Mean::of(relit.means()),
+                lights: lights.iter().enumerate().map(light).collect(),
+                mean_of_seven: Mean::of(relit.means(SEVEN)),
+                mean: Mean::of(relit.means(0..lights.len())),
             });
         }
-        reports.push(SetReport {
-            samples: set.name,
-            count: set.samples.len(),
-            lights: lights.iter().map(|light| light.name().to_owned()).collect(),
-            ways: rows,
-        });
+        reports.push(SetReport { samples: set.name, count: set.samples.len(), ways: rows });
     }
     Ok(RelightReport { sets: reports })
 }
@@ -94,23 +117,41 @@ impl Report for RelightReport {
 }
 
 impl SetReport {
-    /// The table in Markdown.
+    /// The table in Markdown: each row once, and which ways have the same.
     fn table(&self) -> String {
-        let Self { samples, count, lights, ways } = self;
+        let Self { samples, count, ways } = self;
+        let lights = ways.first().map_or(&[][..], |way| &way.lights);
+        let names: Vec<&str> = lights.iter().map(|light| light.light.as_str()).collect();
         let mut text = format!(
-            "ΔE00 from {samples} (n = {count}), mean ± standard error\n\n\
-             | way | with dye | D65 | {} | mean of the others |\n|{}\n",
-            lights.join(" | "),
+            "ΔE00 from {samples} (n = {count}), means ± standard errors; in brackets under lights of which the \
+             way was told\n\n\
+             | way | with dye | {} | the seven | all |\n|{}\n",
+            names.join(" | "),
             " --- |".repeat(lights.len() + 4),
         );
-        for WayReport { way, dyed, contract, lights, mean } in ways {
-            let means = [contract].into_iter().chain(lights).chain([mean]);
-            let means: Vec<String> = means
-                .map(|Mean { de2000, standard_error }| format!("{de2000:.2} ± {standard_error:.2}"))
-                .collect();
-            writeln!(text, "| {way} | {dyed} | {} |", means.join(" | "))
-                .expect("writing to a string cannot fail");
+        let mut notes = String::new();
+        for (k, WayReport { way, dyed, lights, mean_of_seven, mean }) in ways.iter().enumerate() {
+            let is_same = |other: &&WayReport| (other.dyed, &other.lights) == (*dyed, lights);
+            if ways[..k].iter().any(|other| is_same(&other)) {
+                continue;
+            }
+            let light = |LightReport { told, mean, .. }: &LightReport| match told {
+                true => format!("({:.2})", mean.de2000),
+                false => format!("{:.2}", mean.de2000),
+            };
+            let total = |mean: &Mean| format!("{:.2} ± {:.2}", mean.de2000, mean.standard_error);
+            let cells = lights.iter().map(light).chain([mean_of_seven, mean].map(total));
+            let cells = cells.collect::<Vec<_>>().join(" | ");
+            writeln!(text, "| {way} | {dyed} | {cells} |").expect(IN_MEMORY);
+            let same = ways[k + 1..].iter().filter(is_same).map(|other| other.way.as_str());
+            let same: Vec<&str> = same.collect();
+            if !same.is_empty() {
+                writeln!(notes, "\nThe same as {way}: {}.", same.join("; ")).expect(IN_MEMORY);
+            }
         }
-        text
+        text + &notes
     }
 }
+
+/// Why texts can be written.
+const IN_MEMORY: &str = "writing to a string cannot fail";

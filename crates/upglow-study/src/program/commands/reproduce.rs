@@ -5,7 +5,7 @@ use upglow_terminal::{Console, Failure, Report, files};
 
 use super::failure;
 use crate::args::ReproduceArgs;
-use crate::bispectral::Measured;
+use crate::bispectral::read_folder;
 use crate::claims::{Claim, claims};
 use crate::cubes::Cubes;
 use crate::report::to_markdown;
@@ -23,8 +23,7 @@ pub(super) fn run(args: &ReproduceArgs, console: &Console) -> Result<(), Failure
         files::check_ending(path, &["md", "txt"])?;
         files::check_output(path)?;
     }
-    let folder = args.bispectral.as_deref();
-    let measured = folder.map(Measured::read_folder).transpose()?.unwrap_or_default();
+    let measured = read_folder(args.bispectral.as_deref())?;
     let cubes = Cubes::new(args.resolution);
     let claims =
         console.work(args.threads, |bar| claims(&cubes, &measured, bar))?.map_err(failure)?;

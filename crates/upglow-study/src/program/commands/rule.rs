@@ -8,12 +8,12 @@ use upglow_terminal::{Bar, Console, Failure, Report};
 
 use super::failure;
 use crate::args::RuleArgs;
-use crate::relight::ways;
 use crate::rule::{
     Doses, Dyed, colors, contract_of_every_color, cube, doses, dyed_alone, dyed_by_look_up,
     dyed_nodes,
 };
 use crate::spread::Spread;
+use crate::ways::{Way, presets_and_limits};
 
 #[derive(Clone, Debug, Serialize)]
 struct RuleReport {
@@ -59,9 +59,9 @@ pub(super) fn run(args: &RuleArgs, console: &Console) -> Result<(), Failure> {
 fn measure(args: &RuleArgs, bar: &Bar) -> Result<RuleReport, BuildError> {
     let RuleArgs { resolution, colors: random, nodes, .. } = *args;
     let colors = colors(random);
-    let alone = ways(&contract_of_every_color()).into_iter().map(|way| {
+    let alone = presets_and_limits(&contract_of_every_color()).into_iter().map(|way| {
         let dyed = colors.iter().map(|colors| dyed_alone(colors, &way)).collect();
-        WayReport { way: way.name, dyed }
+        WayReport { way: way.name().to_owned(), dyed }
     });
     let alone = alone.collect();
     let mut in_cubes = Vec::new();

@@ -1,38 +1,64 @@
-//! What the default makes of the colors of real surfaces, so that a change of it is noticed.
+//! What is made of the colors of real surfaces, so that a change of it is noticed.
 
-use std::path::Path;
+use upglow_color::{Contract, Grid, Illuminant};
+use upglow_fit::{Preset, Unwatched};
+use upglow_terminal::Report as _;
 
-use upglow_color::Contract;
-use upglow_fit::Preset;
-
-use crate::bispectral::Measured;
-use crate::relight::{Relit, Way, sets};
+use crate::bispectral::shared;
+use crate::commands::relight::measure;
+use crate::lights::{SEVEN, lights};
+use crate::relight::{LitSet, Relit, sets};
 use crate::samples::SampleSet;
 use crate::spread::Spread;
+use crate::ways::OneColor;
 
-/// What half a unit of the last of two printed decimals adds to the figures of docs/relighting.md.
-const PRINTED: f64 = 0.005;
+const DOCUMENT: &str = include_str!("../../../../../docs/relighting.md");
 
-fn relit(preset: Preset, measured: &[Measured], set: usize) -> Relit {
-    let (set, lights) = &sets(measured)[set];
-    Relit::of(set, &Way::preset(preset, Contract::default()), lights)
-}
+/// One unit of the last printed digit: machines differ in the last bits of functions.
+const PRINTED: f64 = 0.0101;
 
 #[test]
-fn the_default_relights_measured_surfaces_as_well_as_the_documents_say_and_gives_them_no_dye() {
-    for (set, mean) in [(0, 1.47), (1, 0.92)] {
-        let found = relit(Preset::Natural, &[], set);
-        assert_eq!(found.dyed, 0);
-        assert!(Spread::of(found.home.iter().copied()).max < 0.02, "{:?}", found.home);
-        let found = Spread::of(found.means()).mean;
-        assert!(found <= mean + PRINTED, "{found}");
+fn the_tables_of_the_documents_are_what_the_program_measures() {
+    let measured = shared();
+    if measured.is_empty() {
+        eprintln!(
+            "skipped: the_tables_of_the_documents_are_what_the_program_measures, that of fluorescent \
+             materials (no ../shared/data/bispectral)"
+        );
     }
+    let report = measure(&measured, &Unwatched).unwrap().text();
+    let mut printed = DOCUMENT.lines();
+    for line in report.lines() {
+        // The first line of a table is somewhere in the document, and the others follow it.
+        if line.starts_with("ΔE00") {
+            printed = DOCUMENT.lines();
+            assert!(printed.any(|other| other == line), "no line {line:?}");
+            continue;
+        }
+        let expected = printed.next().unwrap_or_default();
+        assert!(is_same(line, expected), "measured {line:?}, documented {expected:?}");
+    }
+}
+
+/// Whether two lines have the same words, and numbers that are the same as far as they are printed.
+fn is_same(line: &str, other: &str) -> bool {
+    let words = |line: &str| line.split([' ', '(', ')']).map(str::to_owned).collect::<Vec<_>>();
+    let (words, others) = (words(line), words(other));
+    let is_near = |(one, two): (&String, &String)| match (one.parse::<f64>(), two.parse::<f64>()) {
+        (Ok(one), Ok(two)) => (one - two).abs() < PRINTED,
+        _ => one == two,
+    };
+    words.len() == others.len() && words.iter().zip(&others).all(is_near)
 }
 
 #[test]
 fn the_default_relights_object_colors_better_than_one_hard_limit_of_slopes() {
-    let [natural, konig2020] =
-        [Preset::Natural, Preset::Konig2020].map(|preset| relit(preset, &[], 0).means());
+    let (objects, lights) = (SampleSet::object_colors(), lights());
+    let relit = |preset| {
+        let way = OneColor::preset(preset, &Contract::default());
+        Relit::of(&LitSet::new(&objects, &lights), &way).means(SEVEN)
+    };
+    let [natural, konig2020] = [Preset::Natural, Preset::Konig2020].map(relit);
     let gains = Spread::of(konig2020.iter().zip(natural).map(|(before, now)| before - now));
     // Three standard errors: chance alone would do this once in 700 times.
     assert!(gains.mean > 3.0 * gains.standard_error, "{gains:?}");
@@ -40,28 +66,10 @@ fn the_default_relights_object_colors_better_than_one_hard_limit_of_slopes() {
 
 #[test]
 fn every_measured_surface_has_a_color_of_the_default_space() {
-    for (set, _) in sets(&[]) {
-        let colorimetry = Contract::default().on(set.grid);
-        for sample in &set.samples {
-            let rgb = colorimetry.rgb_from_xyz(sample.color(&colorimetry)).0;
-            assert!(rgb.iter().all(|v| (0.0..=1.0).contains(v)), "{rgb:?}");
-        }
+    let colorimetry = Contract::default().on(Grid::FIT);
+    for sample in sets(&[]).iter().flat_map(|set| &set.samples) {
+        let color = sample.color(&Illuminant::default(), colorimetry.white());
+        let rgb = colorimetry.rgb_from_xyz(color).0;
+        assert!(rgb.iter().all(|v| (0.0..=1.0).contains(v)), "{} {rgb:?}", sample.name);
     }
-}
-
-#[test]
-fn the_default_relights_fluorescent_materials_as_well_as_the_documents_say() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/bispectral");
-    if !folder.is_dir() {
-        eprintln!(
-            "skipped: the_default_relights_fluorescent_materials_as_well_as_the_documents_say \
-             (no ../shared/data/bispectral)"
-        );
-        return;
-    }
-    let measured = Measured::read_folder(&folder).unwrap();
-    let fluorescent = sets(&[]).len();
-    let found = Spread::of(relit(Preset::Natural, &measured, fluorescent).means()).mean;
-    assert!(found <= 3.57 + PRINTED, "{found}");
-    assert_eq!(SampleSet::fluorescent(&measured).samples.len(), 4);
 }

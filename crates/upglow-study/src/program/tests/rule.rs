@@ -4,8 +4,8 @@ use upglow::Fluorescence;
 use upglow_color::{Contract, Grid, lab_from_xyz};
 use upglow_fit::{CubeSummary, Preset, Unwatched};
 
-use crate::relight::Way;
 use crate::rule::{colors, contract_of_every_color, cube, doses, dyed_by_look_up, dyed_nodes};
+use crate::ways::OneColor;
 
 /// Greatest |dr/dλ| of the default's reflectances without a dye, 1/nm.
 fn limit_per_nm() -> f64 {
@@ -16,7 +16,7 @@ fn limit_per_nm() -> f64 {
 fn known_surfaces_and_srgb_colors_are_matched_without_a_dye() {
     // Darker colors of sRGB with a channel at zero need steeper slopes, and some of them get a dye.
     const NEARLY_BLACK: f64 = 5.0;
-    let way = Way::preset(Preset::Natural, contract_of_every_color());
+    let way = OneColor::preset(Preset::Natural, &contract_of_every_color());
     let white = Contract::default().on(Grid::FIT).white();
     for (name, colors) in colors(2000) {
         let is_srgb = name.contains("sRGB");
@@ -24,7 +24,7 @@ fn known_surfaces_and_srgb_colors_are_matched_without_a_dye() {
             if is_srgb && lab_from_xyz(color, white).l <= NEARLY_BLACK {
                 continue;
             }
-            let fit = way.material(color);
+            let fit = way.fit(color);
             assert_eq!(fit.fluorescence, Fluorescence::None, "{name} {color:?}");
             assert!(fit.de2000 <= CubeSummary::EXACT_DE2000, "{name} {color:?} {fit:?}");
             assert!(fit.reflectance.slope_per_nm.abs() <= limit_per_nm(), "{name} {color:?}");

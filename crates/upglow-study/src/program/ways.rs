@@ -1,0 +1,236 @@
+//! Ways to make a material of what is known of a sample.
+
+use std::borrow::Cow;
+
+use upglow::{
+    Accounting, DyeModel, DyeOptions, DyeSet, FilmModel, Fluorescence, Material, Mixing, Mixture,
+    Model, QuantumYield,
+};
+use upglow_color::{Choice, Contract, DonaldsonMatrix, Illuminant, Xyz};
+use upglow_fit::{
+    Fit, FitOptions, FitOptionsError, Fitter, GivenOptions, MatrixFit, MatrixFitError,
+    MatrixFitOptions, Method, Preset, fit_matrix,
+};
+
+use crate::samples::Sample;
+
+/// A way to make a material of what is known of a sample.
+pub(crate) trait Way: Sync {
+    /// What reports call it.
+    fn name(&self) -> &str;
+
+    /// The lights under which it knows the color of a sample. Under these it predicts nothing.
+    fn told(&self) -> Vec<Illuminant> {
+        vec![Illuminant::default()]
+    }
+
+    /// The material of a sample.
+    fn material(&self, sample: &Sample) -> Made<'_>;
+}
+
+/// A weighted mean of materials of one model.
+#[derive(Clone, Debug)]
+pub(crate) struct Made<'w> {
+    model: Cow<'w, Model>,
+    /// Weights, which add up to 1, and materials.
+    parts: Vec<(f64, Material)>,
+}
+
+impl Made<'_> {
+    /// The mean as a matrix on the axes of `measured`.
+    pub(crate) fn matrix_like(&self, measured: &DonaldsonMatrix) -> DonaldsonMatrix {
+        let matrix = |&(weight, material): &(f64, Material)| {
+            (weight, Mixture::of(&self.model, material).matrix_like(measured))
+        };
+        let parts: Vec<(f64, DonaldsonMatrix)> = self.parts.iter().map(matrix).collect();
+        measured.with_factors(|o, i| parts.iter().map(|(w, part)| w * part.factors()[o][i]).sum())
+    }
+
+    /// Whether a dye is in it.
+    pub(crate) fn is_dyed(&self) -> bool {
+        self.parts.iter().any(|(_, material)| material.fluorescence != Fluorescence::None)
+    }
+}
+
+/// A fit of the color under D65, each by itself.
+#[derive(Debug)]
+pub(crate) struct OneColor {
+    name: String,
+    fitter: Fitter,
+}
+
+impl OneColor {
+    /// Fits under a contract whose light is D65.
+    ///
+    /// # Errors
+    ///
+    /// [`FitOptionsError`] if an option is out of range.
+    pub(crate) fn try_new(
+        name: impl Into<String>,
+        contract: &Contract,
+        model: &Model,
+        options: FitOptions,
+    ) -> Result<Self, FitOptionsError> {
+        Ok(Self { name: name.into(), fitter: Fitter::new(contract, model, options)? })
+    }
+
+    /// The fit of a preset.
+    pub(crate) fn preset(preset: Preset, contract: &Contract) -> Self {
+        Self::try_new(preset.to_string(), contract, &preset.model(), preset.options())
+            .expect("a preset is in range")
+    }
+
+    /// The fit of a color under the contract's light: of the nearest RGB that can be asked for.
+    pub(crate) fn fit(&self, color: Xyz) -> Fit {
+        let mut rgb = self.fitter.model().colorimetry().rgb_from_xyz(color);
+        rgb.0 = rgb.0.map(|value| value.clamp(0.0, Fitter::BRIGHTEST));
+        self.fitter.fit(rgb).expect("the color is in range")
+    }
+}
+
+impl Way for OneColor {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn material(&self, sample: &Sample) -> Made<'_> {
+        let model = self.fitter.model();
+        let color = sample.color(&Illuminant::default(), model.colorimetry().white());
+        let parts = vec![(1.0, self.fit(color).material())];
+        Made { model: Cow::Borrowed(model.model()), parts }
+    }
+}
+
+/// Slope limits beside those of the preset `natural`: of a reflectance alone and under dyes, 1/nm.
+const OTHER_LIMITS_PER_NM: [[f64; 2]; 5] =
+    [[0.065, 0.01], [0.065, 0.03], [0.05, 0.02], [0.02, 0.02], [0.01, 0.01]];
+
+/// Every preset, then `natural` with other limits.
+pub(crate) fn presets_and_limits(contract: &Contract) -> Vec<OneColor> {
+    let presets = Preset::ALL.iter().map(|preset| OneColor::preset(*preset, contract));
+    let limited = |[alone, under_dyes]: [f64; 2]| {
+        let given = GivenOptions {
+            slope_max_per_nm: Some(Some(alone)),
+            slope_under_dyes_per_nm: Some(Some(under_dyes)),
+            ..GivenOptions::default()
+        };
+        let (model, options) = (Preset::Natural.model(), Preset::Natural.options().with(given));
+        let name = format!("{}, {alone} and {under_dyes}/nm", Preset::Natural);
+        OneColor::try_new(name, contract, &model, options).expect("the limits are in range")
+    };
+    presets.chain(OTHER_LIMITS_PER_NM.map(limited)).collect()
+}
+
+/// [`presets_and_limits`], then two presets with other dyes and rules of fluorescence, and by the method of the
+/// paper.
+pub(crate) fn ways() -> Vec<OneColor> {
+    let contract = Contract::default();
+    let mut ways = presets_and_limits(&contract);
+    let mut add = |preset: Preset, with: &str, model: Model, options: FitOptions| {
+        let way = OneColor::try_new(format!("{preset}, {with}"), &contract, &model, options);
+        ways.push(way.expect("the options are in range"));
+    };
+    let set = |name| DyeSet::named(name).expect("the set is built in");
+    let (photon, energy) = (Accounting::Photon, Accounting::Energy);
+    let (all, half) = (QuantumYield::Fixed(1.0), QuantumYield::Fixed(0.5));
+    for (with, dyes, accounting, quantum_yield) in [
+        ("konig8", "konig8", photon, all),
+        ("wide14", "wide14", photon, all),
+        ("energy", "wide8", energy, all),
+        ("yield 0.5", "wide8", photon, half),
+        ("measured yields", "wide8", photon, QuantumYield::Measured),
+    ] {
+        let film = FilmModel::new(set(dyes), accounting, quantum_yield);
+        let model = Model::Film(film.expect("the yield is in range"));
+        add(Preset::Natural, with, model, Preset::Natural.options());
+    }
+    let usual = DyeOptions::default();
+    for (with, options) in [
+        ("photon", DyeOptions { accounting: photon, ..usual }),
+        ("separate", DyeOptions { mixing: Mixing::Separate, ..usual }),
+        ("measured yields", DyeOptions { quantum_yield: QuantumYield::Measured, ..usual }),
+        ("optical density 2", DyeOptions { optical_density: Some(2.0), ..usual }),
+    ] {
+        let dyes = DyeModel::new(set("konig8"), options).expect("the density is in range");
+        add(Preset::Konig2020, with, Model::Dyes(dyes), Preset::Konig2020.options());
+    }
+    let method = FitOptions { method: Method::Konig2020, ..Preset::Konig2020.options() };
+    add(Preset::Konig2020, "method of the paper", Preset::Konig2020.model(), method);
+    ways
+}
+
+/// What comes nearest to samples whose matrices are known as a whole.
+#[derive(Clone, Debug)]
+pub(crate) struct WholeMatrix(Vec<(String, MatrixFit)>);
+
+impl WholeMatrix {
+    /// The fits of these samples; later asked for by their names.
+    ///
+    /// # Errors
+    ///
+    /// The name of the sample that has no material, and why.
+    pub(crate) fn of(samples: &[Sample]) -> Result<Self, (String, MatrixFitError)> {
+        let fit = |sample: &Sample| {
+            let name = || sample.name.clone();
+            let fit = fit_matrix(sample.matrix(), &MatrixFitOptions::default());
+            fit.map(|fit| (name(), fit)).map_err(|error| (name(), error))
+        };
+        samples.iter().map(fit).collect::<Result<_, _>>().map(Self)
+    }
+}
+
+impl Way for WholeMatrix {
+    fn name(&self) -> &'static str {
+        "told the whole matrix"
+    }
+
+    fn material(&self, sample: &Sample) -> Made<'_> {
+        let found = self.0.iter().find(|(name, _)| *name == sample.name);
+        let (_, fit) = found.expect("it was made for this sample");
+        Made { model: Cow::Borrowed(fit.model()), parts: vec![(1.0, fit.material())] }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::relight::{LitSet, Relit};
+    use crate::samples::SampleSet;
+    use upglow::Sigmoid;
+
+    /// Half of a dark and half of a light gray, whatever the sample; told its colors under two lights.
+    struct TwoGrays;
+
+    impl Way for TwoGrays {
+        fn name(&self) -> &'static str {
+            "two grays"
+        }
+
+        fn told(&self) -> Vec<Illuminant> {
+            ["D65", "A"].map(|name| Illuminant::named(name).unwrap()).to_vec()
+        }
+
+        fn material(&self, _: &Sample) -> Made<'_> {
+            let half = |share| (0.5, Material::passive(Sigmoid::flat(share)));
+            Made { model: Cow::Owned(Model::Reflectance), parts: vec![half(0.2), half(0.6)] }
+        }
+    }
+
+    #[test]
+    fn a_mean_of_grays_is_a_gray_and_a_light_that_was_told_is_in_no_mean() {
+        let mut set = SampleSet::paints();
+        // Rounding of sums, in ΔE00.
+        const ROUNDING: f64 = 1e-9;
+        let lights = ["A", "E", "FL2"].map(|name| Illuminant::named(name).unwrap());
+        let of = |set: &SampleSet| Relit::of(&LitSet::new(set, &lights), &TwoGrays);
+        let found = of(&set);
+        assert_eq!((&found.told[..], found.dyed), (&[true, false, false][..], 0));
+        let [e, fl2] = [1, 2].map(|light| found.under(light));
+        for (sample, mean) in found.means(0..3).into_iter().enumerate() {
+            assert!((mean - (e[sample] + fl2[sample]) / 2.0).abs() < ROUNDING);
+        }
+        let gray = set.samples[0].matrix().with_factors(|o, i| if i == o + 16 { 0.4 } else { 0.0 });
+        set.samples = vec![Sample::try_new("gray".into(), gray).unwrap()];
+        assert!(of(&set).under(2)[0] < ROUNDING);
+    }
+}
