@@ -10,7 +10,7 @@ use crate::arrays::{Number, fill, to_single, triples};
 use crate::cube::Cube;
 use crate::errors::value_error;
 use crate::illuminant::Illuminant;
-use crate::threads::on_threads;
+use crate::threads::{Threads, on_threads};
 use crate::word::Word;
 
 /// The colors of a cube's materials under one light.
@@ -67,7 +67,7 @@ impl Colors {
         &self,
         py: Python<'py>,
         rgb: PyReadonlyArray2<'py, f32>,
-        threads: Option<usize>,
+        threads: Threads,
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
         self.each(py, triples(&rgb)?, threads, |_| ())
     }
@@ -77,7 +77,7 @@ impl Colors {
         &self,
         py: Python<'py>,
         rgb: PyReadonlyArray2<'py, f32>,
-        threads: Option<usize>,
+        threads: Threads,
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
         self.each(py, triples(&rgb)?, threads, |colors| {
             for color in colors {
@@ -92,7 +92,7 @@ impl Colors {
         &self,
         py: Python<'py>,
         rgb: PyReadonlyArray2<'py, f32>,
-        threads: Option<usize>,
+        threads: Threads,
     ) -> PyResult<Bound<'py, PyArray1<f32>>> {
         let rgb = triples(&rgb)?;
         let found = self.each(py, rgb, threads, |_| ())?;
@@ -120,7 +120,7 @@ impl Colors {
         &self,
         py: Python<'py>,
         rgb: &[[f32; 3]],
-        threads: Option<usize>,
+        threads: Threads,
         finish: impl Fn(&mut [[f32; 3]]) + Sync,
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let array = PyArray2::zeros(py, [rgb.len(), 3], false);

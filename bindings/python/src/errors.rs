@@ -4,12 +4,19 @@ use std::fmt::Display;
 use std::io;
 use std::path::Path;
 
-use pyo3::exceptions::{PyOSError, PyValueError};
-use pyo3::{PyErr, PyResult};
+use pyo3::exceptions::{PyOSError, PyTypeError, PyValueError};
+use pyo3::prelude::*;
 
 /// A `ValueError`, for an invalid argument.
 pub(crate) fn value_error(error: impl Display) -> PyErr {
     PyValueError::new_err(error.to_string())
+}
+
+/// A `TypeError`, for an argument of another kind.
+pub(crate) fn kind_error(name: &str, found: Borrowed<'_, '_, PyAny>, expected: &str) -> PyErr {
+    let kind = found.get_type();
+    let kind = kind.name().map_or_else(|_| "of another kind".to_owned(), |name| name.to_string());
+    PyTypeError::new_err(format!("{name} is {kind}, expected {expected}"))
 }
 
 /// Checks that an argument is in a range, which NaN never is.

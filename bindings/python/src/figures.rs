@@ -11,7 +11,7 @@ use crate::cube::Cube;
 use crate::errors::{check_range, value_error};
 use crate::model::Model;
 use crate::observer::Observer;
-use crate::threads::on_threads;
+use crate::threads::{Threads, on_threads};
 use crate::word::Word;
 
 /// Most points along one axis of an array: more would fill the memory, and are a typing error.
@@ -56,7 +56,7 @@ pub(crate) fn chromaticity_diagram<'py>(
 pub(crate) fn node_colors<'py>(
     py: Python<'py>,
     cube: &Cube,
-    threads: Option<usize>,
+    threads: Threads,
 ) -> PyResult<(Rows<'py>, Rows<'py>)> {
     let colors = py.detach(|| {
         let colorimetry = cube.cube.contract().on(Grid::FIT);
@@ -79,7 +79,7 @@ pub(crate) fn layer<'py>(
     blue: f64,
     side: Option<usize>,
     interpolation: Word<Interpolation>,
-    threads: Option<usize>,
+    threads: Threads,
 ) -> PyResult<LayerArrays<'py>> {
     check_range("blue", blue, [0.0, 1.0])?;
     check_range("side", side.unwrap_or(cube.cube.resolution()), [2, MOST_POINTS])?;
@@ -142,7 +142,7 @@ pub(crate) fn solid_surface<'py>(
     contract: &Contract,
     materials: Word<Materials>,
     steps: usize,
-    threads: Option<usize>,
+    threads: Threads,
 ) -> PyResult<(Rows<'py>, Rows<'py>)> {
     check_range("steps", steps, [2, MOST_POINTS])?;
     let colorimetry = &contract.colorimetry;

@@ -15,7 +15,7 @@ use crate::cube::Cube;
 use crate::errors::value_error;
 use crate::model::Model;
 use crate::nodes::{Arrays, arrays};
-use crate::threads::on_threads;
+use crate::threads::{Threads, on_threads};
 use crate::watch::{Watcher, watched};
 use crate::word::Word;
 
@@ -42,7 +42,7 @@ pub(crate) fn build(
     model: &Model,
     resolution: usize,
     options: Options,
-    threads: Option<usize>,
+    threads: Threads,
     report: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Cube> {
     let (Word(preset), metric, slope_max, slope_under_dyes, relaxed, method, sweeps) = options;
@@ -68,7 +68,7 @@ pub(crate) fn fit<'py>(
     py: Python<'py>,
     cube: &Cube,
     rgb: PyReadonlyArray2<'py, f64>,
-    threads: Option<usize>,
+    threads: Threads,
     report: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Arrays<'py>> {
     let options = FitOptions::try_from(cube.cube.fit()).map_err(value_error)?;

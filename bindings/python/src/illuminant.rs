@@ -16,7 +16,7 @@ use crate::word::Word;
 pub(crate) struct Illuminant(pub(crate) upglow_color::Illuminant);
 
 impl Illuminant {
-    /// The light of samples. An error starts with `place` and names the argument which could mend it.
+    /// The light of samples. An error starts with `place` and names the argument that could mend it.
     fn sampled(
         light: Result<upglow_color::Illuminant, IlluminantError>,
         ends: Option<Ends>,
@@ -24,7 +24,7 @@ impl Illuminant {
     ) -> PyResult<Self> {
         light.map(Self).map_err(|error| {
             let has_choice = ends.is_none() && error.lacks_ends();
-            let hint = "; ends=\"zero\" or \"hold\" says what is beyond";
+            let hint = "; Illuminant(…, ends=\"zero\") or \"hold\" says what is beyond";
             value_error(format_args!("{place}{error}{}", if has_choice { hint } else { "" }))
         })
     }

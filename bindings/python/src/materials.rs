@@ -10,7 +10,7 @@ use crate::arrays::triples;
 use crate::cube::Cube;
 use crate::errors::value_error;
 use crate::nodes::{Arrays, arrays};
-use crate::threads::on_threads;
+use crate::threads::{Threads, on_threads};
 
 /// Colors that a thread works on at a time.
 const BATCH: usize = 1024;
@@ -21,7 +21,7 @@ pub(crate) fn polish<'py>(
     py: Python<'py>,
     cube: &Cube,
     rgb: PyReadonlyArray2<'py, f32>,
-    threads: Option<usize>,
+    threads: Threads,
 ) -> PyResult<Arrays<'py>> {
     let rgb = triples(&rgb)?;
     let polished = py.detach(|| {

@@ -10,6 +10,7 @@ use crate::errors::value_error;
 use crate::illuminant::Illuminant;
 use crate::model::DyeSet;
 use crate::observer::Observer;
+use crate::threads::{Threads, on_threads};
 use crate::word::Word;
 
 /// A measured re-radiation matrix.
@@ -138,5 +139,8 @@ pub(crate) fn fit_matrix(
     };
     let reflectance = reflectance.map(|Word(word)| word);
     let options = MatrixFitOptions { dyes, count, reflectance };
-    py.detach(|| upglow_fit::fit_matrix(&measured.0, &options)).map(MatrixFit).map_err(value_error)
+    let fitted = py.detach(|| {
+        on_threads(Threads::default(), || upglow_fit::fit_matrix(&measured.0, &options))
+    })?;
+    fitted.map(MatrixFit).map_err(value_error)
 }

@@ -9,6 +9,7 @@ use upglow_color::choices;
 use crate::arrays::{Number, check_count};
 use crate::cube::Cube;
 use crate::rows::{Subjects, answers, with_rows};
+use crate::threads::Threads;
 use crate::word::Word;
 
 /// What is evaluated, at one or two wavelengths (nm) and, for draws, with two random numbers.
@@ -91,7 +92,7 @@ pub(crate) fn answer<'py>(
     of: Subjects<'py>,
     question: Word<Question>,
     given: PyReadonlyArray2<'py, f64>,
-    threads: Option<usize>,
+    threads: Threads,
 ) -> PyResult<Bound<'py, PyAny>> {
     let Word(question) = question;
     let [taken, made] = question.counts();

@@ -10,7 +10,7 @@ use crate::cube::Cube;
 use crate::errors::value_error;
 use crate::illuminant::Illuminant;
 use crate::observer::Observer;
-use crate::threads::on_threads;
+use crate::threads::{Threads, on_threads};
 
 /// Numbers of each color under each light, `[light, color][number]`; the white of each light, and whether the observer is
 /// adapted to it.
@@ -25,7 +25,7 @@ pub(crate) fn relight<'py>(
     rgb: PyReadonlyArray2<'py, f64>,
     lights: Vec<PyRef<'py, Illuminant>>,
     observer: &Observer,
-    threads: Option<usize>,
+    threads: Threads,
 ) -> PyResult<Relit<'py>> {
     let rgb: Vec<LinearRgb> = triples(&rgb)?.iter().copied().map(LinearRgb).collect();
     let lights: Vec<upglow_color::Illuminant> =

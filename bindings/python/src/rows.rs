@@ -9,7 +9,7 @@ use upglow_color::LinearRgb;
 use upglow_fit::{ColorError, Fitter};
 
 use crate::arrays::{Number, fill};
-use crate::threads::on_threads;
+use crate::threads::{Threads, on_threads};
 
 /// What is evaluated, one per row: colors to look up in one of two precisions, or stored materials.
 #[derive(FromPyObject)]
@@ -85,7 +85,7 @@ pub(crate) fn answers<'py, M: Bispectral<Real: Number>>(
     py: Python<'py>,
     rows: &Rows<impl Fn(usize) -> Option<M> + Sync>,
     width: usize,
-    threads: Option<usize>,
+    threads: Threads,
     answer: impl Fn(usize, &M, &mut [M::Real]) + Sync,
 ) -> PyResult<Bound<'py, PyArray2<M::Real>>> {
     let array = PyArray2::zeros(py, [rows.count, width], false);

@@ -10,6 +10,7 @@ use crate::cube::Cube;
 use crate::errors::value_error;
 use crate::nodes::nodes;
 use crate::rows::{Rows, Subjects, answers, doubles, stored, with_rows};
+use crate::threads::Threads;
 use crate::word::Word;
 
 /// The quantity of a spectrum.
@@ -31,7 +32,7 @@ pub(crate) fn spectrum<'py>(
     of: Subjects<'py>,
     quantity: Word<Quantity>,
     wavelengths_nm: Vec<f64>,
-    threads: Option<usize>,
+    threads: Threads,
 ) -> PyResult<Bound<'py, PyAny>> {
     with_rows!(cube, of, rows => {
         let nm: Vec<_> = wavelengths_nm.iter().map(|&nm| Number::from_double(nm)).collect();
@@ -52,7 +53,7 @@ pub(crate) fn reradiation_matrix<'py>(
     cube: &Cube,
     of: Subjects<'py>,
     grid_nm: [u32; 3],
-    threads: Option<usize>,
+    threads: Threads,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let [first_nm, last_nm, step_nm] = grid_nm;
     let grid = Grid::try_new(first_nm, last_nm, step_nm).map_err(value_error)?;
@@ -73,7 +74,7 @@ fn matrices<'py, 'r>(
     py: Python<'py>,
     rows: &Rows<impl Fn(usize) -> Option<Mixture<'r>> + Sync>,
     grid: Grid,
-    threads: Option<usize>,
+    threads: Threads,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     answers(py, rows, grid.len().pow(2), threads, |_, mixture, out| {
         for (out, row) in out.chunks_exact_mut(grid.len()).zip(mixture.reradiation_matrix(grid)) {

@@ -6,7 +6,7 @@ use upglow_color::LinearRgb;
 
 use crate::arrays::{fill, triples};
 use crate::contract::Contract;
-use crate::threads::on_threads;
+use crate::threads::{Threads, on_threads};
 
 /// Kind, distance in XYZ and ΔE00 of each color.
 type Standings<'py> =
@@ -20,7 +20,7 @@ pub(crate) fn standing<'py>(
     py: Python<'py>,
     contract: &Contract,
     rgb: PyReadonlyArray2<'py, f64>,
-    threads: Option<usize>,
+    threads: Threads,
 ) -> PyResult<Standings<'py>> {
     let rgb = triples(&rgb)?;
     let mut found = vec![(0, 0.0, 0.0); rgb.len()];

@@ -6,7 +6,7 @@ use upglow_fit::{Check, Offender, VerifyOptions};
 
 use crate::cube::Cube;
 use crate::errors::value_error;
-use crate::threads::on_threads;
+use crate::threads::{Threads, on_threads};
 use crate::watch::watched;
 use crate::word::Word;
 
@@ -31,7 +31,7 @@ pub(crate) fn verify(
     points: usize,
     interpolation: Word<Interpolation>,
     seed: u64,
-    threads: Option<usize>,
+    threads: Threads,
     report: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(usize, usize, bool, Vec<Row>)> {
     let options = VerifyOptions { points, interpolation: interpolation.0, seed };

@@ -35,8 +35,13 @@ pub trait Choice: Copy + 'static {
         Self::ALL.iter().copied().find(has_name).ok_or_else(|| UnknownChoice {
             what: Self::WHAT,
             found: word.into(),
-            expected: alternatives(Self::ALL.iter().map(|value| value.name())),
+            expected: Self::known_words(),
         })
+    }
+
+    /// The known words, without former ones: "a, b or c".
+    fn known_words() -> String {
+        alternatives(Self::ALL.iter().map(|value| value.name()))
     }
 }
 
