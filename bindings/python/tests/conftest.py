@@ -12,6 +12,9 @@ import upglow
 
 REPOSITORY = Path(__file__).resolve().parents[3]
 
+BISPECTRAL = REPOSITORY.parent / "shared" / "data" / "bispectral"
+"""Measured matrices; tests that read them skip by name where they are absent."""
+
 
 @pytest.fixture(scope="session")
 def cube() -> upglow.Cube:

@@ -255,11 +255,45 @@ def test_masked_arrays_are_refused(cube) -> None:
             call()
 
 
-def test_materials_of_another_cube_give_nan(cube) -> None:
-    materials = upglow.build(model=upglow.Dyes(set="wide14"), resolution=4).nodes
-    foreign = materials.dyes[..., 0] >= 8
-    assert foreign.any()
-    assert np.array_equal(np.isnan(cube.reflectance(materials, 500.0)), foreign)
+def test_materials_of_another_model_are_refused(cube) -> None:
+    others = [
+        upglow.build(model=upglow.Dyes(set="wide14"), resolution=2),
+        upglow.build(preset="konig2020", model=upglow.Dyes(accounting="photon"), resolution=2),
+        upglow.build(model=upglow.Reflectance(), resolution=2),
+    ]
+    for materials in (other.nodes[0, 0] for other in others):
+        for ask in (
+            lambda of: cube.reflectance(of, 500.0),
+            lambda of: cube.albedo(of, [500.0]),
+            lambda of: cube.reradiation(of, 500.0, 600.0),
+            lambda of: cube.reradiation_matrix(of),
+            lambda of: cube.sample_incident(of, 500.0, [0.5, 0.5]),
+        ):
+            with pytest.raises(ValueError, match="^materials of another cube: their model is "):
+                ask(materials)
+    with pytest.raises(ValueError, match=r"model is reflectance [0-9a-f]{8}, expected dyes [0-9a-f]{8}$"):
+        cube.albedo(others[2].nodes, 500.0)
+
+
+def test_materials_are_taken_by_cubes_of_the_same_model(cube) -> None:
+    light = upglow.Contract(illuminant="A")
+    other = upglow.build(light, preset="konig2020", resolution=2)
+    assert np.array_equal(cube.albedo(other.nodes, 500.0), other.albedo(other.nodes, 500.0))
+
+
+def test_materials_of_ones_own_numbers_are_taken_as_the_cubes(cube) -> None:
+    of = cube.nodes
+    arrays = dict(reflectance=of.reflectance, fluorescence=of.fluorescence, de2000=of.de2000)
+    own = upglow.Materials(**arrays, dyes=of.dyes, model="dyes")
+    assert own.model_id is None
+    assert np.array_equal(cube.albedo(own, 500.0), cube.albedo(of, 500.0))
+    # A dye that the set does not have is no material.
+    unknown = upglow.Materials(**arrays, dyes=of.dyes + np.uint8(200), model="dyes")
+    fluoresces = of.concentration > 0
+    assert fluoresces.any()
+    assert np.isnan(cube.albedo(unknown, 500.0))[fluoresces].all()
+    with pytest.raises(ValueError, match="their model is film, expected dyes"):
+        cube.albedo(upglow.Materials(**arrays, dyes=of.dyes, model="film"), 500.0)
 
 
 def test_results_do_not_depend_on_threads(cube, rng) -> None:

@@ -146,12 +146,91 @@ def test_its_spectra_are_taken_as_dyes() -> None:
     assert np.allclose(cube.dye_curves[0, 0], bell(500.0))
 
 
+def test_lights_go_there_and_come_back() -> None:
+    narrow = upglow.Illuminant.line(500.0, 0.5)
+    lights = [upglow.Illuminant(name) for name in (*upglow.Illuminant.names(), "3000K", "D6200K")]
+    for light in (*lights, narrow):
+        sd = light.to_colour()
+        first, last = light.given_nm
+        assert (sd.name, sd.shape) == (light.name, colour.SpectralShape(first, last, 1))
+        assert upglow.Illuminant(sd, ends="zero") == light
+
+
+def test_observers_go_there_and_come_back() -> None:
+    for name in upglow.Observer.names():
+        observer = upglow.Observer(name)
+        msds = observer.to_colour()
+        assert (msds.name, msds.labels) == (observer.name, ["x_bar", "y_bar", "z_bar"])
+        assert upglow.Observer(msds) == observer
+    seen = upglow.Observer("cie-1931-2deg").to_colour()
+    assert np.abs(seen.values - TWO_DEGREES.values).max() < 1e-12
+    with warnings.catch_warnings():
+        # It says that it aligns the light with the observer.
+        warnings.simplefilter("ignore")
+        white = colour.sd_to_XYZ(colour.sd_ones(seen.shape), seen, upglow.Illuminant("A").to_colour())
+    # Sums over 5 nm here.
+    assert np.abs(white / 100.0 - upglow.Contract(illuminant="A").white_xyz).max() < GRID
+
+
+def test_a_distribution_of_another_kind_is_a_type_error() -> None:
+    with pytest.raises(TypeError, match="illuminant is XYZ_.*a colour.SpectralDistr"):
+        upglow.Illuminant(TWO_DEGREES)
+    with pytest.raises(TypeError, match=r"observer is SpectralDistribution.* a colour.MultiSpectral"):
+        upglow.Observer(colour.SDS_ILLUMINANTS["A"])
+
+
+def test_its_spectra_are_taken_as_measured_reflectances() -> None:
+    nm = np.arange(380.0, 781.0, 10.0)
+    apart = colour.SpectralDistribution(np.full(41, 0.3), nm)
+    make = lambda reflectance: upglow.DonaldsonMatrix(  # noqa: E731
+        nm, nm, 0.5 * np.eye(41), unit="per band", reflectance=reflectance
+    )
+    assert np.array_equal(make(apart).per_band, 0.3 * np.eye(41))
+    light = upglow.Illuminant("A").to_colour()
+    lit = make(apart).color(light, TEN_DEGREES)
+    assert np.abs(lit - make((nm, apart.values)).color("A", "cie-1964-10deg")).max() < 1e-12
+    with pytest.raises(TypeError, match="reflectance has 41 items, expected a pair"):
+        make([(n, 0.3) for n in nm])
+
+
+def test_spectra_of_many_colors_are_those_of_each(cube) -> None:
+    picture = COLORS[:4].reshape(2, 2, 3)
+    for quantity in ("radiance_factor", "reflectance"):
+        many = cube.spectral_distributions(picture, quantity=quantity)
+        assert many.labels == ["0", "1", "2", "3"]
+        for label, rgb in zip(many.labels, COLORS, strict=False):
+            one = cube.spectral_distribution(rgb, quantity=quantity)
+            assert np.array_equal(many.signals[label].values, one.values)
+    # What the dyes of a strong magenta emit.
+    emitted = cube.spectral_distribution(COLORS[0]) - cube.spectral_distribution(COLORS[0], quantity="reflectance")
+    assert emitted.values.min() > -1e-12 and emitted.values.max() > 0.05
+
+
+def test_spectra_of_materials_are_taken(cube) -> None:
+    fitted = cube.fit(COLORS)
+    nm = np.arange(400.0, 701.0, 20.0)
+    many = cube.spectral_distributions(fitted, nm, quantity="reflectance")
+    assert np.array_equal(many.values.T, cube.reflectance(fitted, nm))
+    one = cube.spectral_distribution(fitted[1], nm, light="A")
+    assert np.array_equal(one.values, cube.radiance_factor(fitted[1], nm, light="A"))
+
+
 def test_one_color_a_spectrum(cube) -> None:
-    with pytest.raises(ValueError, match=r"rgb has shape \(5, 3\), expected \(3,\)"):
+    with pytest.raises(ValueError, match=r"of has shape \(5,\) of colors, expected one: see"):
         cube.spectral_distribution(COLORS)
+    with pytest.raises(ValueError, match="expected radiance_factor or reflectance"):
+        cube.spectral_distribution(COLORS[0], quantity="albedo")
+    with pytest.raises(ValueError, match="light with the quantity reflectance"):
+        cube.spectral_distribution(COLORS[0], quantity="reflectance", light="A")
 
 
 def test_without_colour_science_the_package_is_named(cube, monkeypatch) -> None:
     monkeypatch.setitem(sys.modules, "colour", None)
-    with pytest.raises(ImportError, match="needs the package colour-science"):
-        cube.spectral_distribution(COLORS[0])
+    for ask in (
+        lambda: cube.spectral_distribution(COLORS[0]),
+        lambda: cube.spectral_distributions(COLORS),
+        upglow.Illuminant("A").to_colour,
+        upglow.Observer("cie-1931-2deg").to_colour,
+    ):
+        with pytest.raises(ImportError, match="^this needs colour-science: pip install colour-science$"):
+            ask()

@@ -88,7 +88,7 @@ def test_an_invalid_contract_is_refused(make, message) -> None:
 
 
 def test_another_type_than_a_spectrum_is_a_type_error() -> None:
-    with pytest.raises(TypeError, match="illuminant is int, expected a pair"):
+    with pytest.raises(TypeError, match="illuminant is int, expected a name, a path, an Illuminant, a pair"):
         upglow.Illuminant(7)
     with pytest.raises(FileNotFoundError):
         upglow.Illuminant("no/such/light.csv")
@@ -99,7 +99,7 @@ def test_a_light_that_ends_early_needs_ends(tmp_path) -> None:
     path = tmp_path / "lamp.csv"
     rows = "\n".join(f"{each:g},2" for each in nm)
     path.write_text(f"wavelength_nm,power\n{rows}\n")
-    hint = '; ends="zero" or "hold" says what is beyond'
+    hint = '; Illuminant(…, ends="zero") or "hold" says what is beyond'
     for source, place in (((nm, 2 * np.ones(81)), "custom"), (path, str(path))):
         with pytest.raises(ValueError) as found:
             upglow.Illuminant(source)

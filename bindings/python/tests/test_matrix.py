@@ -4,11 +4,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import BISPECTRAL
 
 import upglow
 
 NM = np.arange(380.0, 781.0, 10.0)
-SHARED = Path(__file__).parents[4] / "shared" / "data" / "bispectral"
 
 # Sums of the same products in another order.
 ROUNDING = 1e-12
@@ -33,7 +33,7 @@ def test_a_density_is_times_the_width_of_its_band() -> None:
     matrix = upglow.DonaldsonMatrix(NM, NM, np.full((41, 41), 0.002), unit="per nm")
     assert np.abs(matrix.per_band - 0.02).max() < ROUNDING
     apart = upglow.DonaldsonMatrix(
-        NM, NM, np.zeros((41, 41)), unit="per band", reflectance=[(nm, 0.3) for nm in NM]
+        NM, NM, np.zeros((41, 41)), unit="per band", reflectance=(NM, np.full(41, 0.3))
     )
     assert (apart.diagonal, apart.per_band[5, 5]) == ("reflected", 0.3)
 
@@ -61,9 +61,9 @@ def test_faults_are_named() -> None:
         upglow.fit_matrix(yellow(), count=2, reflectance="measured")
 
 
-@pytest.mark.skipif(not SHARED.is_dir(), reason="no ../shared/data/bispectral")
+@pytest.mark.skipif(not BISPECTRAL.is_dir(), reason="no ../shared/data/bispectral")
 def test_the_measured_materials_are_read_and_fitted() -> None:
-    matrix = upglow.DonaldsonMatrix.from_bfc(SHARED / "TEXTYELL.BFC")
+    matrix = upglow.DonaldsonMatrix.from_bfc(BISPECTRAL / "TEXTYELL.BFC")
     assert matrix.per_band.shape == (41, 49)
     assert matrix.noise is not None and matrix.noise[0] < 0.001
     assert upglow.fit_matrix(matrix).difference("A").de2000 < 1.0

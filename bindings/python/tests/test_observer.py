@@ -113,7 +113,7 @@ def test_an_invalid_observer_is_refused(make, message) -> None:
 
 
 def test_another_type_than_a_table_is_a_type_error() -> None:
-    with pytest.raises(TypeError, match="observer is int, expected a pair .*MultiSpectral"):
+    with pytest.raises(TypeError, match="observer is int, expected a name, .* a pair .*MultiSpectral"):
         upglow.Observer(7)
     with pytest.raises(FileNotFoundError):
         upglow.Observer("no/such/eye.csv")

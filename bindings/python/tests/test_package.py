@@ -12,8 +12,11 @@ import subprocess
 import sys
 import warnings
 from pathlib import Path
+from xml.etree import ElementTree
 
+import numpy as np
 import pytest
+from conftest import BISPECTRAL
 
 import upglow
 
@@ -63,6 +66,44 @@ def test_the_package_says_that_it_is_typed() -> None:
     assert (Path(upglow.__file__).parent / "py.typed").exists()
 
 
+def test_signatures_and_representations_are_short() -> None:
+    things = [getattr(upglow, name) for name in upglow.__all__]
+    functions = [upglow.build, upglow.standing, upglow.fit_matrix]
+    for owner in (thing for thing in things if inspect.isclass(thing)):
+        functions += [f for f in vars(owner).values() if inspect.isfunction(f)]
+    functions += [getattr(upglow.figures, name) for name in upglow.figures.__all__]
+    for function in functions:
+        if callable(function):
+            for parameter in inspect.signature(function).parameters.values():
+                assert len(repr(parameter.default)) < 60, function
+    nm = np.arange(380.0, 781.0, 10.0)
+    matrix = upglow.DonaldsonMatrix(nm, nm, 0.5 * np.eye(41), unit="per band")
+    cube = upglow.build(model=upglow.Reflectance(), resolution=3)
+    dye = upglow.Dye(name="x", absorption=(nm, nm), emission=(nm, nm))
+    shown = [cube, cube.contract, cube.nodes, matrix, upglow.fit_matrix(matrix), dye]
+    for thing in (*shown, upglow.Illuminant("A"), upglow.Observer("cie-2015-2deg")):
+        assert len(repr(thing)) < 140 and "\n" not in repr(thing), repr(thing)
+    assert repr(cube.nodes[0]) == "Materials(reflectance, shape (3, 3))"
+    assert repr(matrix) == "DonaldsonMatrix(41 outgoing x 41 incident bands, together)"
+
+
+def test_notebooks_show_what_things_are() -> None:
+    contract = upglow.Contract(illuminant="FL11")
+    cube = upglow.build(contract, model=upglow.Reflectance(), resolution=3)
+    odd = upglow.Illuminant((upglow.FINE_NM, np.ones(531)), name="<lamp> & co")
+    for thing, told in (
+        (contract, ["acescg", "FL11", "CIE 1931 2°", "bradford"]),
+        (cube, ["Cube of 3³ nodes", "FL11", "reflectance", "27, "]),
+        (upglow.Illuminant("FL11"), ["FL11", "380 to 780 nm", "<polyline"]),
+        (upglow.Observer("cie-1964-10deg"), ["CIE 1964 10°", "<polyline"]),
+        (odd, ["&lt;lamp&gt; &amp; co"]),
+    ):
+        html = thing._repr_html_()
+        # It is well formed, and small.
+        ElementTree.fromstring(html.replace("<br>", "<br/>"))
+        assert all(words in html for words in told) and len(html) < 30_000, html[:200]
+
+
 def test_the_readme_runs(tmp_path, monkeypatch) -> None:
     monkeypatch.chdir(tmp_path)
     blocks = re.findall(r"```python\n(.*?)```", (FOLDER / "README.md").read_text(), re.DOTALL)
@@ -82,6 +123,50 @@ def test_the_tour_runs(capsys) -> None:
     told = capsys.readouterr().out
     for line in ("brown: reflectance, ", "mint: needs fluorescence, ", "green: unreachable, "):
         assert line in told
+
+
+@pytest.mark.parametrize("with_plots", [True, False], ids=["plots", "no plots"])
+def test_the_measured_matrix_runs(tmp_path, monkeypatch, capsys, with_plots: bool) -> None:
+    if with_plots:
+        pytest.importorskip("matplotlib", reason="needs the package matplotlib")
+        monkeypatch.setenv("MPLBACKEND", "Agg")
+    else:
+        monkeypatch.setitem(sys.modules, "matplotlib", None)
+    told = run_the_measured_matrix(tmp_path, monkeypatch, capsys, [])
+    assert (tmp_path / "measured_matrix.png").exists() == with_plots
+    assert ("no plots: they need matplotlib" in told) == (not with_plots)
+    # A sigmoid and a dye of the matrix, fitted to what is a sigmoid and a dye with noise.
+    assert all(de2000 < 1.0 for de2000 in fitted_de2000(told))
+    whiteness = {line.split("  ")[0]: line.split()[-2] for line in told.splitlines()}
+    assert float(whiteness["D65"]) > float(whiteness["D65 without UV"]) and whiteness["M1"] == "nan"
+    difference = re.search(r"greatest difference in XYZ: (\S+)", told)
+    # Single precision here.
+    assert difference is not None and float(difference[1]) < 1e-4
+
+
+@pytest.mark.skipif(not BISPECTRAL.is_dir(), reason="no ../shared/data/bispectral")
+def test_the_measured_matrix_takes_a_file(tmp_path, monkeypatch, capsys) -> None:
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    file = str(BISPECTRAL / "TEXTYELL.BFC")
+    told = run_the_measured_matrix(tmp_path, monkeypatch, capsys, [file])
+    assert all(de2000 < 1.5 for de2000 in fitted_de2000(told))
+
+
+def run_the_measured_matrix(tmp_path, monkeypatch, capsys, arguments: list[str]) -> str:
+    program = FOLDER / "examples" / "measured_matrix.py"
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "argv", [str(program), *arguments])
+    with warnings.catch_warnings():
+        # Lamps without ultraviolet; and what colour-science lacks.
+        warnings.simplefilter("ignore")
+        runpy.run_path(str(program))
+    return capsys.readouterr().out
+
+
+def fitted_de2000(told: str) -> list[float]:
+    """ΔE00 of the material under each of the seven lights."""
+    table = told[told.index("light  ") :].splitlines()[1:8]
+    return [float(line.split()[-2]) for line in table]
 
 
 def test_the_benchmark_runs(monkeypatch, capsys) -> None:

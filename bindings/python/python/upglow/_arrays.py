@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _upglow
-from ._materials import Materials
+from ._kinds import wrong
+from ._materials import Materials, ModelName
 
 Shape = tuple[int, ...]
 
@@ -22,19 +23,30 @@ Nm = ArrayLike
 """One wavelength or an array of them, nm."""
 
 
-def unmasked(what: str, values: Any) -> NDArray[Any]:
-    """The array of what a caller gives; masked ones are refused, because an array loses the mask."""
+def numbers(what: str, values: Any) -> NDArray[np.float64]:
+    """The numbers that a caller gives, in double precision."""
+    return _numeric(what, values).astype(np.float64, copy=False)
+
+
+def _numeric(what: str, values: Any) -> NDArray[Any]:
+    """The numbers that a caller gives. Masked arrays are refused, because an array loses the mask."""
     parts = values if isinstance(values, (list, tuple)) else (values,)
     if any(isinstance(part, np.ma.MaskedArray) for part in parts):
         raise TypeError(f"{what} is a masked array, expected one without mask: see filled()")
-    return np.asarray(values)
+    try:
+        array = np.asarray(values)
+    except ValueError:
+        raise ValueError(f"{what} has rows of different lengths, expected an array") from None
+    if array.dtype.kind == "O" and not isinstance(values, (list, tuple, np.ndarray)):
+        raise wrong(what, values, "numbers")
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f"{what} has dtype {array.dtype}, expected numbers")
+    return array
 
 
 def rgb_array(rgb: ArrayLike) -> NDArray[Any]:
     """RGB of shape (..., 3): float32 stays float32, all other types become float64."""
-    array = unmasked("rgb", rgb)
-    if array.dtype.kind not in "fiu":
-        raise TypeError(f"rgb has dtype {array.dtype}, expected numbers")
+    array = _numeric("rgb", rgb)
     if array.ndim == 0 or array.shape[-1] != 3:
         raise ValueError(f"rgb has shape {array.shape}, expected (..., 3)")
     return array if array.dtype == np.float32 else array.astype(np.float64, copy=False)
@@ -73,23 +85,23 @@ def single_rows(array: NDArray[Any]) -> NDArray[np.float32]:
     return rows(array.astype(np.float32, copy=False))
 
 
-def subjects(of: Of, outside: str) -> tuple[Any, Shape]:
+def subjects(of: Of, outside: str, model: ModelName) -> tuple[Any, Shape]:
     """What is evaluated, in the native half's form, and its leading shape."""
     if isinstance(of, Materials):
-        return of._rows(), of.shape
+        return of._rows(model), of.shape
     array = within(of, outside)
     return rows(array), array.shape[:-1]
 
 
 def broadcast(
-    of: Of, outside: str, *numbers: ArrayLike
+    of: Of, outside: str, model: ModelName, *known: ArrayLike
 ) -> tuple[Any, NDArray[np.float64], Shape]:
     """What is evaluated, a row of numbers for each, and the leading shape of both."""
     subject = of if isinstance(of, Materials) else within(of, outside)
     lead = subject.shape if isinstance(subject, Materials) else subject.shape[:-1]
-    arrays = [np.asarray(number, dtype=np.float64) for number in numbers]
+    arrays = [np.asarray(number, dtype=np.float64) for number in known]
     shape = np.broadcast_shapes(lead, *(array.shape for array in arrays))
     given = rows(np.stack([np.broadcast_to(array, shape) for array in arrays], axis=-1))
     if isinstance(subject, Materials):
-        return subject.broadcast_to(shape)._rows(), given, shape
+        return subject.broadcast_to(shape)._rows(model), given, shape
     return rows(np.broadcast_to(subject, (*shape, 3))), given, shape

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _upglow
+from ._arrays import numbers
+from ._html import table
 from ._illuminant import Illuminant
+from ._kinds import instance, wrong
 from ._observer import Observer
 
 
@@ -57,11 +61,18 @@ class Contract:
         adaptation: str = "bradford",
     ) -> None:
         if not isinstance(space, str):
-            space = [float(v) for v in space]
+            if not isinstance(space, (list, tuple, np.ndarray)):
+                raise wrong("space", space, "a name or eight numbers")
+            space = numbers("space", space).ravel().tolist()
             if len(space) != 8:
                 raise ValueError(f"space has {len(space)} numbers, expected a name or eight numbers")
         light, seen_by = Illuminant(illuminant)._native, Observer(observer)._native
         self._native = _upglow.Contract(space, light, seen_by, adaptation)
+
+    @classmethod
+    def _or_default(cls, contract: Contract | None) -> Contract:
+        """The contract of a caller, or the default one."""
+        return cls() if contract is None else instance("contract", contract, Contract)
 
     @classmethod
     def _of(cls, native: _upglow.Contract) -> Contract:
@@ -119,8 +130,34 @@ class Contract:
         """The matrix that takes XYZ to RGB: ``rgb = xyz @ contract.rgb_from_xyz.T``; (3, 3)."""
         return self._native.rgb_from_xyz
 
-    def __repr__(self) -> str:
-        return (
-            f"Contract(space={self.space!r}, illuminant={self.illuminant.name!r}, "
-            f"observer={self.observer.name!r}, adaptation={self.adaptation!r})"
+    def _key(self) -> tuple[Any, ...]:
+        chromaticities = (*self.primaries_xy.ravel().tolist(), *self.white_xy.tolist())
+        return self.space, chromaticities, self.illuminant, self.observer, self.adaptation
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Contract) and self._key() == other._key()
+
+    def __hash__(self) -> int:
+        return hash(self._key())
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        name, chromaticities, illuminant, observer, adaptation = self._key()
+        space = name if name in Contract.spaces() else chromaticities
+        same = partial(
+            Contract, space=space, illuminant=illuminant, observer=observer, adaptation=adaptation
         )
+        return same, ()
+
+    def _names(self) -> dict[str, str]:
+        return {
+            "space": self.space,
+            "illuminant": self.illuminant.name,
+            "observer": self.observer.name,
+            "adaptation": self.adaptation,
+        }
+
+    def __repr__(self) -> str:
+        return f"Contract({', '.join(f'{k}={v!r}' for k, v in self._names().items())})"
+
+    def _repr_html_(self) -> str:
+        return table("Contract", self._names())

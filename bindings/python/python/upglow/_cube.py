@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import warnings
@@ -19,20 +20,23 @@ from ._arrays import (
     Shape,
     Threads,
     broadcast,
+    numbers,
     refuse_outside,
     rgb_array,
     rows,
     single_rows,
     subjects,
-    unmasked,
     within,
 )
 from ._contract import Contract
+from ._html import table
 from ._illuminant import Illuminant
-from ._materials import Corners, Materials
+from ._kinds import instance, real, whole, wrong
+from ._materials import Corners, Materials, ModelName
 from ._models import Model
 from ._observer import Observer
 from ._progress import Report, reporting
+from ._spectra import distribution, distributions
 from ._standing import standing
 from ._verify import Check, VerifyReport
 from ._wavelengths import FIT_NM, grid, nanometers, wavelength_list
@@ -184,26 +188,33 @@ def build(
     >>> cube.summary().nodes
     125
     """
+    if model is not None and not isinstance(model, Model):
+        raise wrong("model", model, "Film(…), Dyes(…), Analytic(…), Reflectance() or None")
     native = _upglow.Model.of_preset(preset) if model is None else model._native()
     if getattr(model, "quantum_yield", None) == "measured" and native.without_published_yield:
         names = ", ".join(native.without_published_yield)
         warnings.warn(f"no published quantum yield, taken as 1: {names}", stacklevel=2)
-    slope_max, slope_under_dyes = map(_limit, (slope_max_per_nm, slope_under_dyes_per_nm))
-    options = (preset, metric, slope_max, slope_under_dyes, relaxed, method, sweeps)
-    agreed = (contract or Contract())._native
+    slope_max = _limit("slope_max_per_nm", slope_max_per_nm)
+    slope_under_dyes = _limit("slope_under_dyes_per_nm", slope_under_dyes_per_nm)
+    steeper = None if relaxed is None else instance("relaxed", relaxed, bool)
+    tries = None if sweeps is None else whole("sweeps", sweeps)
+    options = (preset, metric, slope_max, slope_under_dyes, steeper, method, tries)
+    agreed = Contract._or_default(contract)._native
+    nodes = whole("resolution", resolution)
     if missing := native.missing_ultraviolet(agreed.illuminant):
         warnings.warn(missing, stacklevel=2)
     with reporting(progress) as report:
-        return Cube._of(_upglow.build(agreed, native, resolution, options, threads, report))
+        return Cube._of(_upglow.build(agreed, native, nodes, options, threads, report))
 
 
-def _limit(slope_per_nm: float | str | None) -> tuple[float | None] | None:
+def _limit(what: str, slope_per_nm: float | str | None) -> tuple[float | None] | None:
     """A slope limit in a tuple, or ``None`` for that of the preset."""
+    expected = "a number, None or 'preset'"
     if isinstance(slope_per_nm, str):
         if slope_per_nm != "preset":
-            raise ValueError(f"slope limit {slope_per_nm!r}, expected a number, None or 'preset'")
+            raise ValueError(f"{what} is {slope_per_nm!r}, expected {expected}")
         return None
-    return (slope_per_nm,)
+    return (None if slope_per_nm is None else real(what, slope_per_nm, expected),)
 
 
 class Cube:
@@ -224,10 +235,11 @@ class Cube:
     ``threads`` is a number of threads, by default one per core. No result depends on it.
     """
 
-    __slots__ = ("_colors", "_contract", "_native")
+    __slots__ = ("_colors", "_contract", "_model", "_native")
 
     _native: _upglow.Cube
     _contract: Contract
+    _model: ModelName | None
     _colors: dict[tuple[Illuminant | None, str, int], _upglow.Colors]
 
     def __init__(self) -> None:
@@ -239,6 +251,7 @@ class Cube:
         cube._native = native
         cube._contract = Contract._of(native.contract())
         cube._colors = {}
+        cube._model = None
         return cube
 
     # Files
@@ -288,6 +301,14 @@ class Cube:
         kind: str = self.header["model"]["kind"]
         return kind
 
+    def _model_name(self) -> ModelName:
+        """What `Materials` of this cube carry with them; made at the first call."""
+        if self._model is None:
+            stated = self.header["model"]
+            content = json.dumps(stated, sort_keys=True).encode() + self.dye_curves.tobytes()
+            self._model = ModelName(stated["kind"], hashlib.sha256(content).hexdigest())
+        return self._model
+
     @property
     def nodes(self) -> Materials:
         """A copy of the nodes' materials, ``[blue][green][red]``; shape (n, n, n).
@@ -295,7 +316,7 @@ class Cube:
         Node i of an axis of n stands for the linear value i / (n - 1).
         """
         n = self.resolution
-        return Materials._of(self._native.nodes(), (n, n, n), self.model)
+        return Materials._of(self._native.nodes(), (n, n, n), self._model_name())
 
     @property
     def dye_names(self) -> list[str]:
@@ -319,6 +340,14 @@ class Cube:
     def __repr__(self) -> str:
         n = self.resolution
         return f"Cube({n}x{n}x{n} {self.model}, {self.contract!r})"
+
+    def _repr_html_(self) -> str:
+        n, found = self.resolution, self.summary()
+        rows = {"model": ": ".join(filter(None, [self.model, ", ".join(self.dye_names)]))}
+        rows |= self.contract._names()
+        rows["nodes"] = f"{found.nodes}, {found.exact} exact, {found.fluorescent} fluorescent"
+        rows["ΔE00 of the nodes"] = f"mean {found.mean_de2000:.3g}, greatest {found.max_de2000:.3g}"
+        return table(f"Cube of {n}³ nodes", rows)
 
     def __reduce__(self) -> tuple[Any, tuple[bytes]]:
         return Cube.from_bytes, (self.to_bytes(),)
@@ -400,6 +429,8 @@ class Cube:
         """
         array = rgb_array(rgb).astype(np.float64, copy=False)
         refuse_outside(array, to_fit=False)
+        if not isinstance(lights, (list, tuple)):
+            raise wrong("lights", lights, "a list of lights")
         made = [Illuminant(light) for light in lights]
         for light in made:
             if missing := self._native.missing_ultraviolet(light._native):
@@ -410,15 +441,15 @@ class Cube:
             self._native, rows(array), natives, seer._native, threads
         )
         shape = (len(made), *array.shape[:-1])
-        numbers = found.reshape(*shape, 13)
+        told = found.reshape(*shape, 13)
         return Relit(
-            xyz=numbers[..., 0:3],
-            lab=numbers[..., 3:6],
-            rgb=numbers[..., 6:9],
-            de2000=numbers[..., 9],
-            fluorescent_share=numbers[..., 10],
-            whiteness=numbers[..., 11],
-            tint=numbers[..., 12],
+            xyz=told[..., 0:3],
+            lab=told[..., 3:6],
+            rgb=told[..., 6:9],
+            de2000=told[..., 9],
+            fluorescent_share=told[..., 10],
+            whiteness=told[..., 11],
+            tint=told[..., 12],
             white=white,
             is_adapted=is_adapted,
         )
@@ -442,7 +473,7 @@ class Cube:
             native = None if illuminant is None else illuminant._native
             if missing := self._native.missing_ultraviolet(native):
                 warnings.warn(missing, stacklevel=3)
-            colors = _upglow.colors(self._native, native, scale, step_nm)
+            colors = _upglow.colors(self._native, native, scale, whole("step_nm", step_nm))
             while len(self._colors) >= _REMEMBERED_LIGHTS:
                 del self._colors[next(iter(self._colors))]
             self._colors[key] = colors
@@ -483,20 +514,25 @@ class Cube:
         return self._number("reradiation_per_nm", of, {"in_nm": in_nm, "out_nm": out_nm}, outside, threads)
 
     def reradiation_matrix(
-        self, of: Of, wavelengths_nm: Nm = FIT_NM, *, outside: str = "raise", threads: Threads = None
+        self,
+        of: Of,
+        wavelengths_nm: ArrayLike | None = None,
+        *,
+        outside: str = "raise",
+        threads: Threads = None,
     ) -> NDArray[np.float64]:
         """The re-radiation (Donaldson) matrix over the bands around n wavelengths.
 
         Entry ``[..., out, in]`` is the share of the energy incident at wavelength ``in`` that leaves
         within half a step of ``out``; reflectance is on the diagonal. Each column adds up to at most
-        1. Wavelengths are whole nm in equal steps; by default 300, 305 … 830 nm.
+        1. Wavelengths are whole nm in equal steps; by default ``upglow.FIT_NM``: 300, 305 … 830 nm.
 
         Returns
         -------
         float64 array of shape (..., n, n)
         """
-        native, shape = subjects(of, outside)
-        band = grid(wavelengths_nm)
+        native, shape = subjects(of, outside, self._model_name())
+        band = grid(FIT_NM if wavelengths_nm is None else wavelengths_nm)
         found = _upglow.reradiation_matrix(self._native, native, band, threads)
         n = (band[1] - band[0]) // band[2] + 1
         return found.reshape(*shape, n, n)
@@ -504,7 +540,7 @@ class Cube:
     def radiance_factor(
         self,
         of: Of,
-        wavelengths_nm: ArrayLike = FIT_NM,
+        wavelengths_nm: ArrayLike | None = None,
         *,
         light: Any = None,
         outside: str = "raise",
@@ -522,6 +558,7 @@ class Cube:
         -------
         float64 array of shape (..., n)
         """
+        wavelengths_nm = FIT_NM if wavelengths_nm is None else wavelengths_nm
         matrix = self.reradiation_matrix(of, wavelengths_nm, outside=outside, threads=threads)
         illuminant = self._contract.illuminant if light is None else Illuminant(light)
         if missing := self._native.missing_ultraviolet(illuminant._native):
@@ -537,28 +574,59 @@ class Cube:
 
     def spectral_distribution(
         self,
-        rgb: ArrayLike,
-        wavelengths_nm: ArrayLike = FIT_NM,
+        of: Of,
+        wavelengths_nm: ArrayLike | None = None,
         *,
+        quantity: Literal["radiance_factor", "reflectance"] = "radiance_factor",
         light: Any = None,
         outside: str = "raise",
     ) -> colour.SpectralDistribution:
-        """The total radiance factor of one color, as a spectrum of colour-science.
+        """The spectrum of one color or material, as one of colour-science.
 
-        ``rgb`` is of shape (3,); the rest as in `radiance_factor`. ``ImportError`` without the
-        package ``colour-science``.
+        ``quantity`` is what `radiance_factor` returns, or `reflectance`: the same without what dyes emit.
+        ``of`` is RGB of shape (3,) or `Materials` of shape (); wavelengths, by default
+        ``upglow.FIT_NM``, and ``light`` as there. ``ImportError`` without the package
+        ``colour-science``.
         """
-        try:
-            import colour
-        except ImportError as error:
-            raise ImportError("spectral_distribution needs the package colour-science") from error
-        array = rgb_array(rgb)
-        if array.shape != (3,):
-            raise ValueError(f"rgb has shape {array.shape}, expected (3,)")
-        factor = self.radiance_factor(array, wavelengths_nm, light=light, outside=outside)
-        name = f"{self.contract.space} {tuple(array.tolist())}"
-        nm = wavelength_list(wavelengths_nm)
-        return colour.SpectralDistribution(factor, nm, name=name)
+        nm, values = self._sampled(of, wavelengths_nm, quantity, light, outside)
+        if values.ndim != 1:
+            raise ValueError(
+                f"of has shape {values.shape[:-1]} of colors, expected one: see spectral_distributions"
+            )
+        at = "" if isinstance(of, Materials) else f" {tuple(rgb_array(of).tolist())}"
+        return distribution(f"{self.contract.space}{at}", nm, values)
+
+    def spectral_distributions(
+        self,
+        of: Of,
+        wavelengths_nm: ArrayLike | None = None,
+        *,
+        quantity: Literal["radiance_factor", "reflectance"] = "radiance_factor",
+        light: Any = None,
+        outside: str = "raise",
+    ) -> colour.MultiSpectralDistributions:
+        """The spectra of colors or materials, as those of colour-science.
+
+        As `spectral_distribution`, for any leading shape. Labels are "0", "1" …, in the order of the
+        flattened array.
+        """
+        nm, values = self._sampled(of, wavelengths_nm, quantity, light, outside)
+        columns = values.reshape(-1, nm.size).T
+        labels = [str(i) for i in range(columns.shape[1])]
+        return distributions(self.contract.space, nm, columns, labels)
+
+    def _sampled(
+        self, of: Of, wavelengths_nm: ArrayLike | None, quantity: str, light: Any, outside: str
+    ) -> tuple[NDArray[np.float64], NDArray[Any]]:
+        """Wavelengths in nm, shape (n,), and what is asked for there, shape (..., n)."""
+        nm = wavelength_list(FIT_NM if wavelengths_nm is None else wavelengths_nm)
+        if quantity == "radiance_factor":
+            return nm, self.radiance_factor(of, nm, light=light, outside=outside)
+        if quantity != "reflectance":
+            raise ValueError(f"quantity is {quantity!r}, expected radiance_factor or reflectance")
+        if light is not None:
+            raise ValueError("light with the quantity reflectance, which is the same under all lights")
+        return nm, self.reflectance(of, nm, outside=outside)
 
     # Sampling
 
@@ -618,7 +686,7 @@ class Cube:
     def _spectrum(
         self, quantity: str, of: Of, wavelengths_nm: Nm, outside: str, threads: Threads
     ) -> NDArray[Any]:
-        native, shape = subjects(of, outside)
+        native, shape = subjects(of, outside, self._model_name())
         nm = wavelength_list(wavelengths_nm)
         listed = nm.reshape(-1).tolist()
         found = _upglow.spectrum(self._native, native, quantity, listed, threads)
@@ -627,12 +695,12 @@ class Cube:
     def _sample(
         self, question: str, of: Of, known_nm: Nm, u: ArrayLike, outside: str, threads: Threads
     ) -> Samples:
-        numbers = unmasked("u", u).astype(np.float64, copy=False)
-        if numbers.ndim == 0 or numbers.shape[-1] != 2:
-            raise ValueError(f"u has shape {numbers.shape}, expected (..., 2)")
-        if not np.all((numbers >= 0.0) & (numbers < 1.0)):
+        drawn = numbers("u", u)
+        if drawn.ndim == 0 or drawn.shape[-1] != 2:
+            raise ValueError(f"u has shape {drawn.shape}, expected (..., 2)")
+        if not np.all((drawn >= 0.0) & (drawn < 1.0)):
             raise ValueError("u has a number that is not in 0 to 1, 1 excluded")
-        given = (known_nm, numbers[..., 0], numbers[..., 1])
+        given = (known_nm, drawn[..., 0], drawn[..., 1])
         found, shape = self._answer(question, of, given, outside, threads)
         nm, throughput, pdf, is_elastic = (_shaped(column, shape) for column in found.T)
         return Samples(nm, throughput, pdf, is_elastic == 1.0)
@@ -647,8 +715,8 @@ class Cube:
         self, question: str, of: Of, given: Sequence[ArrayLike], outside: str, threads: Threads
     ) -> tuple[NDArray[Any], Shape]:
         """Each material's answer to its own numbers, one per row, and the leading shape."""
-        native, numbers, shape = broadcast(of, outside, *given)
-        return _upglow.answer(self._native, native, question, numbers, threads), shape
+        native, known, shape = broadcast(of, outside, self._model_name(), *given)
+        return _upglow.answer(self._native, native, question, known, threads), shape
 
     # Materials
 
@@ -664,7 +732,7 @@ class Cube:
         """
         array = within(rgb, outside)
         found = _upglow.polish(self._native, single_rows(array), threads)
-        return Materials._of(found, array.shape[:-1], self.model)
+        return Materials._of(found, array.shape[:-1], self._model_name())
 
     def fit(
         self, rgb: ArrayLike, *, threads: Threads = None, progress: bool | Report = False
@@ -678,7 +746,7 @@ class Cube:
         refuse_outside(array, to_fit=True)
         with reporting(progress) as report:
             found = _upglow.fit(self._native, rows(array), threads, report)
-        return Materials._of(found, array.shape[:-1], self.model)
+        return Materials._of(found, array.shape[:-1], self._model_name())
 
     def corners(self, rgb: ArrayLike, *, outside: str = "raise") -> Corners:
         """The four nodes around each color, and their weights.
@@ -716,9 +784,10 @@ class Cube:
         progress
             As in `upglow.build`.
         """
+        count = whole("points", points)
         with reporting(progress) as report:
             nodes, tried, holds, checks = _upglow.verify(
-                self._native, points, interpolation, seed, threads, report
+                self._native, count, interpolation, whole("seed", seed), threads, report
             )
         found = tuple(Check(*check) for check in checks)
         return VerifyReport(nodes=nodes, points=tried, holds=holds, checks=found)

@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from functools import partial
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _upglow
+from ._html import curves, table
+from ._kinds import real
 from ._named_table import NamedTable
+from ._spectra import distribution
+from ._wavelengths import FINE_NM
+
+if TYPE_CHECKING:
+    import colour
 
 
 class Illuminant(NamedTable):
@@ -69,7 +77,8 @@ class Illuminant(NamedTable):
         ``peak_nm`` is its wavelength and ``fwhm_nm`` its full width at half maximum, 0.001 or more,
         both nm.
         """
-        return cls(_upglow.Illuminant.line(name or f"{peak_nm:g} nm line", peak_nm, fwhm_nm))
+        peak, fwhm = real("peak_nm", peak_nm), real("fwhm_nm", fwhm_nm)
+        return cls(_upglow.Illuminant.line(name or f"{peak:g} nm line", peak, fwhm))
 
     @property
     def power(self) -> NDArray[np.float64]:
@@ -84,3 +93,28 @@ class Illuminant(NamedTable):
         """
         first, last = self._native.given_nm
         return first, last
+
+    def to_colour(self) -> colour.SpectralDistribution:
+        """The power where it is known, as a spectrum of colour-science.
+
+        ``Illuminant(light.to_colour(), ends="zero")`` is the light again. ``ImportError`` without the
+        package ``colour-science``.
+        """
+        return distribution(self.name, *self._given())
+
+    def _given(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Wavelengths at which the power is known, nm, and the power there."""
+        first, last = self.given_nm
+        is_given = (first <= FINE_NM) & (last >= FINE_NM)
+        return FINE_NM[is_given], self.power[is_given]
+
+    def _repr_html_(self) -> str:
+        first, last = self.given_nm
+        drawing = curves(FINE_NM, self.power, colors=("currentColor",))
+        return table(f"Illuminant {self.name}", {"known": f"{first} to {last} nm"}, drawing)
+
+    def _key(self) -> tuple[Any, ...]:
+        return *super()._key(), self.given_nm
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return partial(Illuminant, name=self.name, ends="zero"), (self._given(),)

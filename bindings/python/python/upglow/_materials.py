@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 _Change = Callable[[NDArray[Any]], NDArray[Any]]
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class Materials:
     """An array of materials, each of at most six numbers, which the properties return by name.
 
@@ -33,6 +33,10 @@ class Materials:
         CIEDE2000 of each material against its color, sums over 5 nm; float32 (...).
     model
         ``reflectance``, ``dyes``, ``film`` or ``analytic``.
+    model_id
+        Digest of the model with its dyes and rules. A cube of another model refuses the materials, whose
+        numbers would mean something else there. ``None`` where it is not known, as for numbers of
+        your own.
     """
 
     reflectance: NDArray[np.float32]
@@ -40,11 +44,15 @@ class Materials:
     fluorescence: NDArray[np.float32]
     de2000: NDArray[np.float32]
     model: str
+    model_id: str | None = None
 
     @classmethod
-    def _of(cls, arrays: tuple[Any, Any, Any, Any], shape: tuple[int, ...], model: str) -> Materials:
+    def _of(
+        cls, arrays: tuple[Any, Any, Any, Any], shape: tuple[int, ...], model: ModelName
+    ) -> Materials:
         names = "reflectance", "dyes", "fluorescence", "de2000"
-        flat = cls(**dict(zip(names, arrays, strict=True)), model=model)
+        numbers = dict(zip(names, arrays, strict=True))
+        flat = cls(**numbers, model=model.kind, model_id=model.digest)
         return flat._each(lambda a: a.reshape(shape), lambda a: a.reshape(*shape, a.shape[-1]))
 
     @property
@@ -130,12 +138,31 @@ class Materials:
             de2000=of_number(self.de2000),
         )
 
-    def _rows(self) -> tuple[NDArray[np.float32], NDArray[np.uint8], NDArray[np.float32]]:
+    def __repr__(self) -> str:
+        return f"Materials({self.model}, shape {self.shape})"
+
+    def _rows(
+        self, model: ModelName
+    ) -> tuple[NDArray[np.float32], NDArray[np.uint8], NDArray[np.float32]]:
+        """One row for each material, for a cube of this model."""
+        if self.model != model.kind or self.model_id not in (None, model.digest):
+            found = ModelName(self.model, self.model_id)
+            raise ValueError(f"materials of another cube: their model is {found}, expected {model}")
         return (
             np.ascontiguousarray(self.reflectance, dtype=np.float32).reshape(-1, 3),
             np.ascontiguousarray(self.dyes, dtype=np.uint8).reshape(-1, 2),
             np.ascontiguousarray(self.fluorescence, dtype=np.float32).reshape(-1, 3),
         )
+
+
+class ModelName(NamedTuple):
+    """What tells the model of a cube from all others."""
+
+    kind: str
+    digest: str | None
+
+    def __str__(self) -> str:
+        return f"{self.kind} {self.digest[:8]}" if self.digest else self.kind
 
 
 class Corners(NamedTuple):

@@ -11,11 +11,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _upglow
-from ._arrays import unmasked
+from ._arrays import numbers
 from ._cube import Cube
 from ._illuminant import Illuminant
+from ._kinds import instance, whole
 from ._models import Dye, _native_set
 from ._observer import Observer
+from ._spectra import samples
 
 
 class DonaldsonMatrix:
@@ -31,8 +33,9 @@ class DonaldsonMatrix:
     unit
         ``per band``, or ``per nm`` of the outgoing wavelength.
     reflectance
-        Where light that is reflected was measured apart: pairs (wavelength in nm, reflectance), at
-        wavelengths of both axes. They replace the diagonal.
+        Where light that is reflected was measured apart: a pair ``(wavelengths_nm, reflectance)`` of
+        arrays of shape (n,), or a ``colour.SpectralDistribution``, at wavelengths of both axes. It
+        replaces the diagonal.
 
     Raises
     ------
@@ -59,14 +62,17 @@ class DonaldsonMatrix:
         values: ArrayLike,
         *,
         unit: Literal["per band", "per nm"],
-        reflectance: Sequence[tuple[float, float]] | None = None,
+        reflectance: Any = None,
     ) -> None:
         incident = _doubles("incident_nm", incident_nm, 1)
         outgoing = _doubles("outgoing_nm", outgoing_nm, 1)
-        samples = None if reflectance is None else [(float(nm), float(r)) for nm, r in reflectance]
         shares = _doubles("values", values, 2)
+        apart = None
+        if reflectance is not None:
+            nm, reflected = samples("reflectance", reflectance)
+            apart = list(zip(nm.tolist(), reflected.tolist(), strict=True))
         self._native = _upglow.DonaldsonMatrix.from_samples(
-            incident, outgoing, shares, unit, samples
+            incident, outgoing, shares, unit, apart
         )
 
     @classmethod
@@ -87,6 +93,10 @@ class DonaldsonMatrix:
         Or ``incident_nm\outgoing_nm``, or ``per_nm``: lines are the axis named first.
         """
         return cls._of(_read(path, _upglow.DonaldsonMatrix.from_csv))
+
+    def __repr__(self) -> str:
+        outgoing, incident = self.per_band.shape
+        return f"DonaldsonMatrix({outgoing} outgoing x {incident} incident bands, {self.diagonal})"
 
     @property
     def incident_nm(self) -> NDArray[np.float64]:
@@ -119,11 +129,7 @@ class DonaldsonMatrix:
 
         ``light`` and ``observer`` are an `Illuminant` and an `Observer`, or what these are made from.
         """
-        light, observer = (
-            _light(light),
-            observer if isinstance(observer, Observer) else Observer(observer),
-        )
-        return np.array(self._native.color(light._native, observer._native))
+        return np.array(self._native.color(Illuminant(light)._native, Observer(observer)._native))
 
 
 class MatrixDifference(NamedTuple):
@@ -155,6 +161,9 @@ class MatrixFit:
         fit._native, fit._measured = native, measured
         return fit
 
+    def __repr__(self) -> str:
+        return f"MatrixFit({self._measured!r})"
+
     @property
     def matrix(self) -> DonaldsonMatrix:
         """The material as a matrix on the axes of the measured one."""
@@ -166,7 +175,7 @@ class MatrixFit:
 
     def difference(self, light: Any = "D65") -> MatrixDifference:
         """How the material looks beside the measured matrix under a light."""
-        found = self._native.difference(self._measured._native, _light(light)._native)
+        found = self._native.difference(self._measured._native, Illuminant(light)._native)
         measured, fitted, de2000, noise, is_adapted = found
         return MatrixDifference(np.array(measured), np.array(fitted), de2000, noise, is_adapted)
 
@@ -198,23 +207,21 @@ def fit_matrix(
     ValueError
         If options do not go together.
     """
-    if not isinstance(measured, DonaldsonMatrix):
-        raise TypeError(f"measured is a {type(measured).__name__}, expected a DonaldsonMatrix")
+    instance("measured", measured, DonaldsonMatrix)
     word = dyes if isinstance(dyes, str) else ""
     chosen = None if word in ("measured", "all") else _native_set(dyes, False)
-    native = _upglow.fit_matrix(measured._native, chosen, word == "all", count, reflectance)
+    dyes_that_emit = None if count is None else whole("count", count)
+    native = _upglow.fit_matrix(
+        measured._native, chosen, word == "all", dyes_that_emit, reflectance
+    )
     return MatrixFit._of(native, measured)
 
 
 def _doubles(what: str, values: ArrayLike, dimensions: int) -> NDArray[np.float64]:
-    array = unmasked(what, values)
+    array = numbers(what, values)
     if array.ndim != dimensions:
         raise ValueError(f"{what} has {array.ndim} dimensions, expected {dimensions}")
-    return np.ascontiguousarray(array, dtype=np.float64)
-
-
-def _light(light: Any) -> Illuminant:
-    return light if isinstance(light, Illuminant) else Illuminant(light)
+    return np.ascontiguousarray(array)
 
 
 def _read(path: str | os.PathLike[str], parse: Any) -> _upglow.DonaldsonMatrix:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from . import _upglow
+from ._kinds import instance, real, wrong
 from ._named_table import is_path
-from ._wavelengths import samples
+from ._spectra import samples
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,8 +36,8 @@ class Dye:
     """
 
     name: str
-    absorption: Any
-    emission: Any
+    absorption: Any = field(repr=False)
+    emission: Any = field(repr=False)
     quantum_yield: float | None = None
 
     def _samples(self) -> tuple[str, list[float], list[float], list[float], float | None]:
@@ -44,8 +45,8 @@ class Dye:
         emission_nm, emission = samples(f"emission of {self.name}", self.emission)
         if nm.tolist() != emission_nm.tolist():
             raise ValueError(f"dye {self.name}: emission at other wavelengths, expected the same")
-        yields = None if self.quantum_yield is None else float(self.quantum_yield)
-        return self.name, nm.tolist(), absorption.tolist(), emission.tolist(), yields
+        yields = None if self.quantum_yield is None else real("quantum_yield", self.quantum_yield)
+        return instance("name of a dye", self.name, str, "a text"), nm.tolist(), absorption.tolist(), emission.tolist(), yields
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,7 +94,10 @@ class Dyes:
         return _native_set(self.set, self.normalize)
 
     def _native(self) -> _upglow.Model:
-        rules = self.accounting, self.mixing, self.quantum_yield, self.optical_density
+        density = self.optical_density
+        if density is not None:
+            density = real("optical_density", density, "a number or None")
+        rules = self.accounting, self.mixing, _yield(self.quantum_yield), density
         return _upglow.Model.dyes(self._native_set(), *rules)
 
 
@@ -124,14 +128,16 @@ class Film:
         return _native_set(self.set, self.normalize)
 
     def _native(self) -> _upglow.Model:
-        return _upglow.Model.film(self._native_set(), self.accounting, self.quantum_yield)
+        return _upglow.Model.film(self._native_set(), self.accounting, _yield(self.quantum_yield))
 
 
 def _native_set(
     dyes: str | os.PathLike[str] | Sequence[Dye], normalize: bool
 ) -> _upglow.DyeSet:
     if not isinstance(dyes, (str, os.PathLike)):
-        sampled = [dye._samples() for dye in dyes]
+        if not isinstance(dyes, (list, tuple)):
+            raise wrong("the set of dyes", dyes, "a name, a folder or a list of Dye")
+        sampled = [instance(f"dye {i}", dye, Dye)._samples() for i, dye in enumerate(dyes)]
         return _upglow.DyeSet.from_samples("custom", sampled, normalize)
     word = os.fspath(dyes)
     if word in _upglow.DyeSet.names() or not is_path(word):
@@ -139,6 +145,12 @@ def _native_set(
             raise ValueError(f"normalize with the set {word!r}, expected a folder or a list")
         return _upglow.DyeSet.named(word)
     return _upglow.DyeSet.from_folder(word, normalize)
+
+
+def _yield(given: float | str) -> float | str:
+    if isinstance(given, str):
+        return given
+    return real("quantum_yield", given, "a number or 'measured'")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -162,7 +174,10 @@ class Analytic:
 
     def _native(self) -> _upglow.Model:
         return _upglow.Model.analytic(
-            self.absorption_fwhm_nm, self.emission_fwhm_nm, self.accounting, self.quantum_yield
+            real("absorption_fwhm_nm", self.absorption_fwhm_nm),
+            real("emission_fwhm_nm", self.emission_fwhm_nm),
+            self.accounting,
+            real("quantum_yield", self.quantum_yield),
         )
 
 

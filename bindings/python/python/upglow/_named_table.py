@@ -9,7 +9,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from ._wavelengths import samples
+from ._kinds import instance
+from ._spectra import samples
 
 
 class NamedTable:
@@ -31,12 +32,16 @@ class NamedTable:
     @classmethod
     def _native_of(cls, source: Any, name: str | None, *rules: str) -> Any:
         """The native half; the native class takes `rules` of reading after the samples."""
+        if name is not None:
+            instance("name", name, str, "a text")
         for native in (source, getattr(source, "_native", None)):
             if isinstance(native, cls._kind):
                 return cls._without(rules, native)
         if isinstance(source, (str, os.PathLike)):
             return cls._named_or_read(os.fspath(source), name, rules)
-        nm, values = samples(cls.__name__.lower(), source, columns=cls._columns)
+        kind = cls.__name__
+        otherwise = f"a name, a path, an {kind}, "
+        nm, values = samples(kind.lower(), source, columns=cls._columns, otherwise=otherwise)
         label = name or str(getattr(source, "name", "custom"))
         arrays = np.ascontiguousarray(nm), np.ascontiguousarray(values)
         try:
@@ -96,7 +101,7 @@ class NamedTable:
     def __hash__(self) -> int:
         return hash(self._key())
 
-    def _key(self) -> tuple[str, bytes]:
+    def _key(self) -> tuple[Any, ...]:
         return self.name, getattr(self._native, self._values).tobytes()
 
 

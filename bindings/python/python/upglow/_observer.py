@@ -2,11 +2,20 @@
 
 from __future__ import annotations
 
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _upglow
+from ._html import curves, table
 from ._named_table import NamedTable
+from ._spectra import distributions
+from ._wavelengths import FINE_NM
+
+if TYPE_CHECKING:
+    import colour
 
 
 class Observer(NamedTable):
@@ -50,3 +59,23 @@ class Observer(NamedTable):
     def matching(self) -> NDArray[np.float64]:
         """x, y and z at each wavelength of ``upglow.FINE_NM``; shape (531, 3)."""
         return self._native.matching
+
+    def to_colour(self) -> colour.MultiSpectralDistributions:
+        """The functions from 360 nm on, as spectra of colour-science with the labels of its own.
+
+        ``Observer(observer.to_colour())`` is the observer again. ``ImportError`` without the package
+        ``colour-science``.
+        """
+        return distributions(self.name, *self._given(), ["x_bar", "y_bar", "z_bar"])
+
+    def _given(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """The wavelengths at which an observer may see, nm, and the functions there."""
+        is_given = FINE_NM >= 360.0
+        return FINE_NM[is_given], self.matching[is_given]
+
+    def _repr_html_(self) -> str:
+        drawing = curves(FINE_NM, *self.matching.T, colors=("#c33", "#393", "#33c"))
+        return table(f"Observer {self.name}", {"functions": "x, y, z from 300 to 830 nm"}, drawing)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return partial(Observer, name=self.name), (self._given(),)

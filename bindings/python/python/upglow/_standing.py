@@ -74,7 +74,7 @@ def standing(
     array = rgb_array(rgb).astype(np.float64, copy=False)
     if not np.isfinite(array).all():
         raise ValueError("rgb has a component that is not finite, expected finite numbers")
-    native = (contract or _default_contract())._native
+    agreed = _default_contract() if contract is None else Contract._or_default(contract)
     shape = array.shape[:-1]
-    kind, distance, de2000 = _upglow.standing(native, rows(array), threads)
+    kind, distance, de2000 = _upglow.standing(agreed._native, rows(array), threads)
     return Standing(kind.reshape(shape), distance.reshape(shape), de2000.reshape(shape))

@@ -1,4 +1,4 @@
-"""Wavelengths of sums and tables, and sampled spectra."""
+"""Wavelengths of sums and tables."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _upglow
-from ._arrays import unmasked
+from ._arrays import numbers
 
 FINE_NM: NDArray[np.float64] = _upglow.Illuminant.wavelengths_nm()
 """300, 301 … 830 nm: the wavelengths of every table."""
@@ -25,7 +25,7 @@ are mistakes of the unit: visible light is 0.38 to 0.78 in µm, and 3800 to 7800
 
 def nanometers(what: str, values: ArrayLike) -> NDArray[np.float64]:
     """Wavelengths in nm. NaN stays, as draws have it where light is absorbed."""
-    nm = unmasked(what, values).astype(np.float64, copy=False)
+    nm = numbers(what, values)
     first, last = RANGE_NM
     outside = nm[(nm < first) | (nm > last)]
     if outside.size:
@@ -39,7 +39,7 @@ def nanometers(what: str, values: ArrayLike) -> NDArray[np.float64]:
 
 def wavelength_list(wavelengths_nm: ArrayLike) -> NDArray[np.float64]:
     """One wavelength or a list of them."""
-    nm = unmasked("wavelengths_nm", wavelengths_nm)
+    nm = numbers("wavelengths_nm", wavelengths_nm)
     if nm.ndim > 1:
         raise ValueError(f"wavelengths_nm has shape {nm.shape}, expected (n,) or a number")
     return nanometers("wavelengths_nm", nm)
@@ -47,7 +47,7 @@ def wavelength_list(wavelengths_nm: ArrayLike) -> NDArray[np.float64]:
 
 def grid(wavelengths_nm: ArrayLike) -> list[int]:
     """First, last and step of whole, equally spaced wavelengths."""
-    nm = unmasked("wavelengths_nm", wavelengths_nm).astype(np.float64, copy=False)
+    nm = numbers("wavelengths_nm", wavelengths_nm)
     steps: NDArray[Any] = np.diff(nm) if nm.ndim == 1 and nm.size > 1 else np.zeros(1)
     is_whole = bool(np.all(nm == np.floor(nm)) and nm.min(initial=0) >= 0)
     if not is_whole or steps[0] <= 0 or np.any(steps != steps[0]):
@@ -57,31 +57,3 @@ def grid(wavelengths_nm: ArrayLike) -> list[int]:
         )
     nanometers("wavelengths_nm", nm)
     return [int(nm[0]), int(nm[-1]), int(steps[0])]
-
-
-def samples(
-    what: str, curve: Any, *, columns: int | None = None
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Wavelengths (nm) and values from a pair of arrays or one of colour-science's distributions.
-
-    Values have shape (n,), or (n, columns).
-    """
-    if hasattr(curve, "wavelengths") and hasattr(curve, "values"):
-        curve = (curve.wavelengths, curve.values)
-    try:
-        wavelengths_nm, values = curve
-    except (TypeError, ValueError):
-        raise TypeError(
-            f"{what} is {type(curve).__name__}, expected a pair (wavelengths_nm, values) or a "
-            f"colour.{'Multi' if columns else ''}SpectralDistribution{'s' if columns else ''}"
-        ) from None
-    nm = unmasked(f"{what}: wavelengths_nm", wavelengths_nm).astype(np.float64, copy=False)
-    value = unmasked(f"{what}: values", values).astype(np.float64, copy=False)
-    per_wavelength = () if columns is None else (columns,)
-    if nm.ndim != 1 or value.shape != (*nm.shape, *per_wavelength):
-        expected = "both (n,)" if columns is None else f"(n,) and (n, {columns})"
-        raise ValueError(
-            f"{what}: wavelengths of shape {nm.shape} and values of shape {value.shape}, "
-            f"expected {expected}"
-        )
-    return nanometers(f"{what}: wavelengths_nm", nm), value

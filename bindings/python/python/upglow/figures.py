@@ -37,6 +37,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _upglow
 from ._contract import Contract
 from ._cube import Cube
+from ._kinds import instance, real, whole
 from ._models import Dyes
 from ._observer import Observer
 from ._standing import standing
@@ -78,7 +79,7 @@ class ChromaticityDiagram(NamedTuple):
 
 def chromaticity(contract: Contract | None = None) -> ChromaticityDiagram:
     """Spectral locus (390 to 700 nm by 1 nm), primaries and white; by default of ACEScg under D65."""
-    nm, locus, primaries, white = _upglow.chromaticity_diagram((contract or Contract())._native)
+    nm, locus, primaries, white = _upglow.chromaticity_diagram(Contract._or_default(contract)._native)
     return ChromaticityDiagram(nm, locus, primaries, white[0])
 
 
@@ -108,7 +109,7 @@ def node_colors(cube: Cube, *, threads: int | None = None) -> NodeColors:
 
     ``numpy.histogram(figures.node_colors(cube).de2000)`` is the distribution of its errors.
     """
-    n = cube.resolution
+    n = instance("cube", cube, Cube).resolution
     xyz, xy = _upglow.node_colors(cube._native, threads)
     axis = np.linspace(0.0, 1.0, n)
     blue, green, red = np.meshgrid(axis, axis, axis, indexing="ij")
@@ -162,9 +163,12 @@ def layer(
     ValueError
         If a number is out of range or the interpolation is unknown.
     """
-    native = _upglow.layer(cube._native, blue, side, interpolation, threads)
+    colors = None if side is None else whole("side", side)
+    native = _upglow.layer(
+        instance("cube", cube, Cube)._native, real("blue", blue), colors, interpolation, threads
+    )
     at, rgb, de2000, has_exact_nodes = native
-    count = side or cube.resolution
+    count = colors or cube.resolution
     square = (count, count)
     return Layer(
         at,
@@ -218,7 +222,8 @@ def dyes(source: Dyes | Cube | None = None, *, observer: Any = None) -> DyeSpect
     if isinstance(source, Cube):
         native, own = source._native.model(), source.contract.observer
     else:
-        native, own = (source or KONIG_2020)._native(), Observer("cie-1931-2deg")
+        model = KONIG_2020 if source is None else instance("source", source, Dyes, "Dyes or a Cube")
+        native, own = model._native(), Observer("cie-1931-2deg")
     seen_by = own if observer is None else Observer(observer)
     names, absorption, emission, peaks, xy = _upglow.dye_spectra(native, seen_by._native)
     return DyeSpectra(names, FINE_NM, absorption, emission, peaks[:, 0], peaks[:, 1], xy)
@@ -303,8 +308,8 @@ def color_solid(
     steps
         Steps from pole to pole, 2 to 2048; twice as many around.
     """
-    native = (contract or Contract())._native
-    xyz, lab = _upglow.solid_surface(native, materials, steps, threads)
+    native = Contract._or_default(contract)._native
+    xyz, lab = _upglow.solid_surface(native, materials, whole("steps", steps), threads)
     shape = (steps + 1, 2 * steps + 1, 3)
     return ColorSolid(xyz.reshape(shape), lab.reshape(shape))
 
