@@ -1,8 +1,9 @@
 //! The CIEDE2000 color difference, as one number and as three residuals with derivatives.
 
 use crate::jet::Jet;
-use crate::lab::Lab;
+use crate::lab::{Lab, lab_jacobian};
 use crate::matrix::Matrix3;
+use crate::values::Xyz;
 
 /// CIEDE2000 of two colors with unit weights; symmetric.
 ///
@@ -12,6 +13,18 @@ use crate::matrix::Matrix3;
 pub fn ciede2000(reference: Lab, sample: Lab) -> f64 {
     let [l, c, h] = ciede2000_residuals(reference, sample).0;
     (l * l + c * c + h * h).sqrt()
+}
+
+/// A chroma that nobody sees, and with which the direction of a hue is exact to ten digits.
+const NEUTRAL: f64 = 1e-4;
+
+/// Derivatives by X, Y, Z, at a color seen against a white, of three numbers whose squares add up to the square of
+/// CIEDE2000 from that color: small differences of color are linear in X, Y, Z.
+pub fn difference_by_xyz(color: Xyz, white: Xyz) -> Matrix3 {
+    let (lab, lab_by_xyz) = lab_jacobian(color, white);
+    // A gray has no hue, in whose direction to differ: beside it the numbers are the same.
+    let lab = Lab { a: if lab.chroma() < NEUTRAL { NEUTRAL } else { lab.a }, ..lab };
+    ciede2000_residuals(lab, lab).1 * lab_by_xyz
 }
 
 /// Three numbers whose squares add up to the square of CIEDE2000, and their derivatives with respect to

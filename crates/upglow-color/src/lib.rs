@@ -68,7 +68,7 @@ pub use serde;
 
 pub use adaptation::Adaptation;
 pub use choice::{Choice, UnknownChoice};
-pub use ciede2000::{ciede2000, ciede2000_residuals};
+pub use ciede2000::{ciede2000, ciede2000_residuals, difference_by_xyz};
 pub use color_solid::{ColorSolid, Nearest};
 pub use colorimetry::Colorimetry;
 pub use contract::{Contract, ContractError, SeenUnder};

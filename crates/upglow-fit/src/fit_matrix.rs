@@ -1,19 +1,14 @@
 //! From a measured re-radiation matrix to a material.
 
-use upglow::{
-    Accounting, Cube, CubeError, DyeSet, DyeSetError, FilmModel, FitRecord, Fluorescence, Material,
-    Mixture, Model, ModelError, ModelOnGrid, Node, QuantumYield, Sigmoid,
-};
-use upglow_color::rounding::to_single;
-use upglow_color::{
-    Contract, ContractError, DonaldsonMatrix, Grid, Illuminant, MeasuredDye, Metric, choices,
-};
+use upglow::{Cube, CubeError, Material, Model, Sigmoid};
+use upglow_color::{Contract, ContractError, DonaldsonMatrix, Illuminant, MeasuredDye, choices};
 
 pub(crate) mod goal;
 mod own_dyes;
 mod separation;
 mod table_dyes;
 
+use crate::own_material::{FilmPart, OwnMaterial, OwnMaterialError, fitted_dye};
 use crate::problem::parabola::MIDDLE_NM;
 use goal::{MatrixDifference, MatrixGoal};
 use own_dyes::{DyeInFilm, emitting_dyes, film_on_white};
@@ -76,26 +71,16 @@ pub enum MatrixFitError {
     /// Daylight does not reach the matrix.
     #[error(transparent)]
     Contract(#[from] ContractError),
-    /// The dyes make no set.
+    /// The dyes make no material.
     #[error(transparent)]
-    Dyes(Box<DyeSetError>),
-    /// The set makes no model.
-    #[error(transparent)]
-    Model(#[from] ModelError),
-}
-
-impl From<DyeSetError> for MatrixFitError {
-    fn from(error: DyeSetError) -> Self {
-        Self::Dyes(error.into())
-    }
+    Material(#[from] OwnMaterialError),
 }
 
 /// A material fitted to a measured matrix.
 #[derive(Clone, Debug, PartialEq)]
 #[must_use]
 pub struct MatrixFit {
-    model: Model,
-    material: Material,
+    material: OwnMaterial,
     matrix: DonaldsonMatrix,
 }
 
@@ -213,9 +198,6 @@ impl Fitting<'_> {
 /// How far above the least the yields of dyes of the matrix start, over a reflectance that is not measured.
 const FIRST_YIELDS: [f64; 3] = [0.1, 0.4, 1.0];
 
-/// The name of the dye set of a fitted material.
-const SET_NAME: &str = "fitted";
-
 /// What the record of a fit calls this method.
 const METHOD: &str = "fit-matrix";
 
@@ -226,14 +208,8 @@ impl MatrixFit {
         found: &Found,
     ) -> Result<Self, MatrixFitError> {
         let with_yield = |k: usize| {
-            let dye = &dyes[found.dyes[k]];
-            let fitted = MeasuredDye {
-                name: format!("{}_fitted", dye.name),
-                quantum_yield: Some(found.yields[k]),
-                provenance: format!("yield fitted; {}", dye.provenance),
-                ..dye.clone()
-            };
-            (fitted, found.densities[k])
+            let dye = fitted_dye(&dyes[found.dyes[k]], found.yields[k], None);
+            (dye, found.densities[k])
         };
         let count = if found.dyes[0] == found.dyes[1] { 1 } else { 2 };
         Self::new(measured, found.reflectance, (0..count).map(with_yield).collect())
@@ -244,31 +220,21 @@ impl MatrixFit {
         reflectance: Sigmoid,
         dyes: Vec<DyeInFilm>,
     ) -> Result<Self, MatrixFitError> {
-        let (dyes, densities): (Vec<_>, Vec<_>) = dyes.into_iter().unzip();
-        let (model, fluorescence) = if dyes.is_empty() {
-            (Model::Reflectance, Fluorescence::None)
-        } else {
-            let density = |k: usize| densities.get(k).copied().unwrap_or(0.0);
-            let fluorescence = Fluorescence::film((0, density(0)), (1, density(1)));
-            let set = DyeSet::new(SET_NAME, dyes)?;
-            let film = FilmModel::new(set, Accounting::Photon, QuantumYield::Measured)?;
-            (Model::Film(film), fluorescence)
-        };
         // As a cube stores it, so that what is reported is what is written.
-        let node = Node::new(reflectance.to_edge(MIDDLE_NM), fluorescence, 0.0);
-        let material = node.material(&model);
-        let matrix = Mixture::of(&model, material).matrix_like(measured);
-        Ok(Self { model, material, matrix })
+        let reflectance = reflectance.to_edge(MIDDLE_NM);
+        let material = OwnMaterial::new(vec![FilmPart { weight: 1.0, reflectance, dyes }])?;
+        let matrix = material.mixture().matrix_like(measured);
+        Ok(Self { material, matrix })
     }
 
     /// The model: a film of the fitted dyes, whose quantum yields are those of the set.
     pub fn model(&self) -> &Model {
-        &self.model
+        self.material.model()
     }
 
     /// The material.
     pub fn material(&self) -> Material {
-        self.material
+        self.material.parts()[0].1
     }
 
     /// The material as a matrix on the axes of the measured one.
@@ -289,32 +255,13 @@ impl MatrixFit {
         MatrixDifference::of(measured, &self.matrix, light)
     }
 
-    /// A cube of 2³ nodes that are all this material, so that all that reads cubes reads it. What it records as
-    /// the distance of each node is that of the material from the node's color.
+    /// [`OwnMaterial::to_cube`] under the default contract.
     ///
     /// # Errors
     ///
     /// [`CubeError`] if a number of the material is out of range.
     pub fn to_cube(&self) -> Result<Cube, CubeError> {
-        let contract = Contract::default();
-        let colorimetry = contract.on(Grid::FIT);
-        let color = ModelOnGrid::new(&self.model, &colorimetry).color(self.material);
-        let edge = self.material.reflectance.to_edge(MIDDLE_NM);
-        let node = Node::new(edge, self.material.fluorescence, 0.0);
-        let fit = FitRecord {
-            metric: Metric::De2000.to_string(),
-            method: METHOD.into(),
-            ..FitRecord::default()
-        };
-        let cube = Cube::new(contract.clone(), self.model.clone(), fit.clone(), 2, vec![node; 8])?;
-        let nodes = (0..8)
-            .map(|index| {
-                let target = colorimetry.xyz_from_rgb(cube.node_rgb(index));
-                let de2000 = Metric::De2000.distance(&colorimetry, target, color);
-                Node { de2000: to_single(de2000), ..node }
-            })
-            .collect();
-        Cube::new(contract, self.model.clone(), fit, 2, nodes)
+        self.material.to_cube(&Contract::default(), METHOD)
     }
 }
 
@@ -323,6 +270,7 @@ pub(crate) mod tests {
     use super::*;
     use proptest::prelude::*;
     use std::path::Path;
+    use upglow::{Accounting, DyeSet, FilmModel, Fluorescence, Mixture, QuantumYield};
     use upglow_color::BispectralUnit;
 
     /// Numbers without a pattern, from -1 to 1, of about unit variance.

@@ -4,6 +4,7 @@
 //! - which kinds of material millions of colors need: [`StandingTable`]
 //! - one material per texel: [`Polisher`]
 //! - a measured re-radiation matrix: [`fit_matrix`]
+//! - all materials that may have a color: [`MetamerSearch`]
 //! - how many colors look under other lights: [`Relighting`]
 //! - a cube: [`build_cube`], [`Preset`], [`CubeSummary`], [`MaterialKind`], [`verify`]
 //!
@@ -30,7 +31,9 @@ mod fit;
 mod fit_matrix;
 mod fitter;
 mod kind;
+mod metamers;
 mod options;
+mod own_material;
 mod polish;
 mod preset;
 mod problem;
@@ -59,7 +62,9 @@ pub use fit_matrix::{
 };
 pub use fitter::{ColorError, Fitter};
 pub use kind::{BlendKinds, KindCounts, MaterialKind};
+pub use metamers::{MetamerError, MetamerLight, MetamerSearch, Metamers, PaintKind};
 pub use options::{FitOptions, FitOptionsError, GivenOptions, Method};
+pub use own_material::{OwnMaterial, OwnMaterialError};
 pub use polish::Polisher;
 pub use preset::Preset;
 pub use progress::{Progress, Unwatched, Watch};

@@ -56,7 +56,7 @@ pub(crate) fn run(args: &FitMatrixArgs, console: &Console) -> Result<(), Failure
     let measured = read(args)?;
     let fit = fit_matrix(&measured, &options).map_err(|error| match error {
         error @ MatrixFitError::Reflectance { .. } => Failure::option("--reflectance", error),
-        error @ MatrixFitError::Dyes(_) => Failure::option("--dyes", error),
+        error @ MatrixFitError::Material(_) => Failure::option("--dyes", error),
         error => Failure::file(&args.file, error),
     })?;
     let differences: Vec<MatrixDifference> = lights

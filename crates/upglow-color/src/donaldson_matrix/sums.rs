@@ -1,10 +1,9 @@
 //! A light and an observer on the axes of a matrix.
 
 use super::DonaldsonMatrix;
-use crate::ciede2000::ciede2000_residuals;
 use crate::contract::{Contract, ContractError, DARK};
 use crate::illuminant::Illuminant;
-use crate::lab::{Lab, lab_from_xyz, lab_jacobian};
+use crate::lab::{Lab, lab_from_xyz};
 use crate::light_bands::LightBands;
 use crate::matrix::Matrix3;
 use crate::observer::Observer;
@@ -29,9 +28,6 @@ pub struct MatrixSums {
     white: Xyz,
     is_adapted: bool,
 }
-
-/// A chroma that nobody sees, and with which the direction of a hue is exact to ten digits.
-const NEUTRAL: f64 = 1e-4;
 
 impl MatrixSums {
     /// The sums for the axes of `matrix`, scaled so that the perfect diffuser has Y = 1.
@@ -137,13 +133,9 @@ impl MatrixSums {
         lab_from_xyz(xyz, self.white)
     }
 
-    /// Derivatives by X, Y, Z, at a color, of three numbers whose squares add up to the square of CIEDE2000
-    /// from that color.
+    /// [`difference_by_xyz`](crate::difference_by_xyz) against the white.
     pub fn difference_by_xyz(&self, color: Xyz) -> Matrix3 {
-        let (lab, lab_by_xyz) = lab_jacobian(color, self.white);
-        // A gray has no hue, in whose direction to differ: beside it the numbers are the same.
-        let lab = Lab { a: if lab.chroma() < NEUTRAL { NEUTRAL } else { lab.a }, ..lab };
-        ciede2000_residuals(lab, lab).1 * lab_by_xyz
+        crate::difference_by_xyz(color, self.white)
     }
 
     /// The radiance factor of a matrix at each outgoing wavelength: what leaves there over what would leave

@@ -216,9 +216,24 @@ impl SingleSums {
         dyes: [usize; 2],
         densities: [f64; 2],
     ) -> (Emitted<2>, SingleLanes) {
+        self.passing(|passed| model.emitted_by_film_in_single(dyes, densities, passed))
+    }
+
+    /// The same for each dye by itself.
+    pub(crate) fn film_by_dye(
+        &self,
+        model: &ModelOnGrid,
+        dyes: [usize; 2],
+        densities: [f64; 2],
+    ) -> ([Emitted<2>; 2], SingleLanes) {
+        self.passing(|passed| model.emitted_by_each_dye_in_single(dyes, densities, passed))
+    }
+
+    /// What is emitted, and what of the light that passes is visible.
+    fn passing<E>(&self, emit: impl FnOnce(&mut [f32]) -> E) -> (E, SingleLanes) {
         const GRID: usize = Grid::FIT.len();
         let mut passed = [0.0; GRID + LANES];
-        let emitted = model.emitted_by_film_in_single(dyes, densities, &mut passed[..GRID]);
+        let emitted = emit(&mut passed[..GRID]);
         let mut visible = SingleLanes::ZERO;
         visible.0.copy_from_slice(&passed[self.first..self.first + LANES]);
         (emitted, visible)

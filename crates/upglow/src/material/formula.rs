@@ -324,6 +324,11 @@ pub struct Emitted<const N: usize> {
     pub derivatives: [[f64; 3]; N],
 }
 
+impl<const N: usize> Emitted<N> {
+    /// No light.
+    pub(crate) const DARK: Self = Self { color: [0.0; 3], derivatives: [[0.0; 3]; N] };
+}
+
 /// One dye under a light and observer.
 #[derive(Clone, Debug)]
 pub(crate) struct Emitter {

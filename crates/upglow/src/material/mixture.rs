@@ -34,6 +34,22 @@ impl<'m> Mixture<'m> {
         Self { model, parts: [(1.0, material), nothing, nothing, nothing] }
     }
 
+    /// Up to four materials of a model, each with a weight that is 0 or more; they are divided by their sum.
+    /// `None` if there are more, or no weight is above 0.
+    pub fn of_parts(model: &'m Model, parts: &[(f64, Material)]) -> Option<Self> {
+        let sum: f64 = parts.iter().map(|(weight, _)| weight).sum();
+        let is_valid =
+            parts.iter().all(|(weight, _)| *weight >= 0.0) && sum > 0.0 && sum.is_finite();
+        if !is_valid || parts.len() > 4 {
+            return None;
+        }
+        let mut of = Self { model, parts: [(0.0, Material::default()); 4] };
+        for (own, (weight, material)) in of.parts.iter_mut().zip(parts) {
+            *own = (weight / sum, *material);
+        }
+        Some(of)
+    }
+
     /// The model of its materials.
     pub fn model(&self) -> &'m Model {
         self.model

@@ -116,16 +116,43 @@ impl ModelOnGrid {
         densities: [f64; 2],
         passed: &mut [f32],
     ) -> Emitted<2> {
+        self.film_energies_in_single(dyes, densities, passed)
+            .map_or(Emitted::DARK, |energies| self.emitted_energies(dyes, energies))
+    }
+
+    /// The same for each dye by itself.
+    pub fn emitted_by_each_dye_in_single(
+        &self,
+        dyes: [usize; 2],
+        densities: [f64; 2],
+        passed: &mut [f32],
+    ) -> [Emitted<2>; 2] {
+        let Some(energies) = self.film_energies_in_single(dyes, densities, passed) else {
+            return [Emitted::DARK; 2];
+        };
+        let FilmEnergies { returned, by_density } = energies;
+        [[1.0, 0.0], [0.0, 1.0]].map(|of: [f64; 2]| {
+            let own = |[a, b]: [f64; 2]| [of[0] * a, of[1] * b];
+            let returned = own(returned);
+            self.emitted_energies(dyes, FilmEnergies { returned, by_density: by_density.map(own) })
+        })
+    }
+
+    fn film_energies_in_single(
+        &self,
+        dyes: [usize; 2],
+        densities: [f64; 2],
+        passed: &mut [f32],
+    ) -> Option<FilmEnergies> {
         let Some([one, two]) = self.singles_of(dyes) else {
             passed.fill(1.0);
-            return Emitted { color: [0.0; 3], derivatives: [[0.0; 3]; 2] };
+            return None;
         };
         let film = Film { densities: densities.map(to_single) };
-        let energies = dispatch!(self.simd_level, simd => simd.vectorize(
+        Some(dispatch!(self.simd_level, simd => simd.vectorize(
             #[inline(always)]
             || film_energies::<f32, 8>(film, [one, two], passed),
-        ));
-        self.emitted_energies(dyes, energies)
+        )))
     }
 
     fn singles_of(&self, [one, two]: [usize; 2]) -> Option<[DyeSamples<&[f32]>; 2]> {
