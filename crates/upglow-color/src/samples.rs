@@ -68,7 +68,7 @@ impl SampleRules {
         gap_limit_nm: 5.0,
         has_blank_ends: true,
         keeps_areas: false,
-        range_hint: ": leave cells empty where it was not measured",
+        range_hint: ": leave cells empty, or NaN in arrays, where it was not measured",
         ..Self::LIGHT
     };
 
