@@ -88,8 +88,8 @@ for light in map(upglow.Illuminant, lights):
     row(light.name, found.measured[1], found.fitted[1], found.de2000, found.noise_de2000)
 
 # %% [markdown]
-# The matrices side by side, on a scale that shows re-emitted light; and the reflectance with what the dye
-# emits under D65. Both are per band of 10 nm.
+# The matrices side by side, on a scale that shows re-emitted light; and the reflectance beside the total
+# radiance factor under D65, which has what the dye emits in addition.
 
 # %%
 try:

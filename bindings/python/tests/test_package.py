@@ -80,7 +80,7 @@ def test_signatures_and_representations_are_short() -> None:
     matrix = upglow.DonaldsonMatrix(nm, nm, 0.5 * np.eye(41), unit="per band")
     cube = upglow.build(model=upglow.Reflectance(), resolution=3)
     dye = upglow.Dye(name="x", absorption=(nm, nm), emission=(nm, nm))
-    shown = [cube, cube.contract, cube.nodes, matrix, upglow.fit_matrix(matrix), dye]
+    shown = [cube, cube.verify(points=5), cube.contract, cube.nodes, matrix, upglow.fit_matrix(matrix), dye]
     for thing in (*shown, upglow.Illuminant("A"), upglow.Observer("cie-2015-2deg")):
         assert len(repr(thing)) < 140 and "\n" not in repr(thing), repr(thing)
     assert repr(cube.nodes[0]) == "Materials(reflectance, shape (3, 3))"
@@ -93,6 +93,7 @@ def test_notebooks_show_what_things_are() -> None:
     odd = upglow.Illuminant((upglow.FINE_NM, np.ones(531)), name="<lamp> & co")
     for thing, told in (
         (contract, ["acescg", "FL11", "CIE 1931 2°", "bradford"]),
+        (cube.verify(points=5), ["Every law holds for 27 nodes", "energy", "holds, "]),
         (cube, ["Cube of 3³ nodes", "FL11", "reflectance", "27, "]),
         (upglow.Illuminant("FL11"), ["FL11", "380 to 780 nm", "<polyline"]),
         (upglow.Observer("cie-1964-10deg"), ["CIE 1964 10°", "<polyline"]),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import dataclasses
 import pickle
 from typing import Any
 
@@ -54,4 +55,7 @@ def test_what_differs_is_not_equal() -> None:
 
 def test_materials_travel(cube: upglow.Cube) -> None:
     nodes = pickle.loads(pickle.dumps(cube.nodes))
+    assert nodes == cube.nodes and copy.copy(nodes) == nodes
+    assert nodes != nodes[0] and nodes != "nodes"
+    assert nodes != dataclasses.replace(nodes, model_id=None)
     assert np.array_equal(cube.albedo(nodes, 500.0), cube.albedo(cube.nodes, 500.0))

@@ -20,7 +20,8 @@ Conventions, everywhere:
 - Each color is computed independently: no result depends on the number of threads or on how an
   array is split.
 - ``threads=None`` uses one thread per core. Python's global lock is released during the work.
-- Invalid input raises a ``ValueError`` that says what was found and what was expected.
+- Invalid input raises a ``ValueError``, and an argument of another kind a ``TypeError``, that says what was
+  found and what was expected.
 
 The library's own documentation, the file format and the physics: see the repository's ``README.md``,
 ``docs/cube-format.md`` and ``docs/decisions``.

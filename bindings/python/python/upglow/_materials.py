@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 _Change = Callable[[NDArray[Any]], NDArray[Any]]
 
 
-@dataclass(frozen=True, kw_only=True, repr=False)
+@dataclass(frozen=True, kw_only=True, repr=False, eq=False)
 class Materials:
     """An array of materials, each of at most six numbers, which the properties return by name.
 
@@ -137,6 +137,13 @@ class Materials:
             fluorescence=of_rows(self.fluorescence),
             de2000=of_number(self.de2000),
         )
+
+    def __eq__(self, other: object) -> bool:
+        """Whether both are the same array of materials of the same model."""
+        if not isinstance(other, Materials):
+            return NotImplemented
+        mine, theirs = vars(self), vars(other)
+        return all(np.array_equal(mine[name], theirs[name]) for name in mine)
 
     def __repr__(self) -> str:
         return f"Materials({self.model}, shape {self.shape})"

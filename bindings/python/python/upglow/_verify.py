@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ._html import table
+
 
 @dataclass(frozen=True)
 class Check:
@@ -29,7 +31,7 @@ class Check:
     """Where the worst value was found, in words."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class VerifyReport:
     """Every law and every figure of a cube, recomputed at every nm from its stored numbers."""
 
@@ -56,5 +58,15 @@ class VerifyReport:
 
     def __str__(self) -> str:
         lines = [f"{c.name:24}{c.verdict:16}{c.value:<12.4g}{c.unit}" for c in self.checks]
+        return "\n".join([*lines, f"{self._verdict()}."])
+
+    def __repr__(self) -> str:
+        return f"VerifyReport({self._verdict()})"
+
+    def _repr_html_(self) -> str:
+        rows = {c.name: f"{c.verdict}, {c.value:.4g} {c.unit}" for c in self.checks}
+        return table(self._verdict(), rows)
+
+    def _verdict(self) -> str:
         verdict = "Every law holds" if self.holds else f"{len(self.broken)} laws are broken"
-        return "\n".join([*lines, f"{verdict} for {self.nodes} nodes, {self.points} colors."])
+        return f"{verdict} for {self.nodes} nodes, {self.points} colors"
