@@ -20,19 +20,20 @@ pub struct Whiteness {
 ///
 /// # Source
 ///
-/// `cie015`, section 9.
+/// `cie15_2004`, section 9.1: coefficients and limits of the third edition, which `whiteness_CIE2004` of
+/// colour-science 0.4.7 repeats. The fourth edition, `cie015`, was not compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 pub struct WhitenessScale {
     /// The perfect diffuser, x, y.
     white: [f64; 2],
     white_y: f64,
-    /// Weight of y in the tint.
-    tint_by_y: f64,
+    /// Weight of x in the tint.
+    tint_by_x: f64,
 }
 
-/// The observers that the formulas are for, and the weight of y in the tint for each.
-const OBSERVERS: [(&str, f64); 2] = [("cie-1931-2deg", 650.0), ("cie-1964-10deg", 900.0)];
+/// The observers that the formulas are for, and the weight of x in the tint for each.
+const OBSERVERS: [(&str, f64); 2] = [("cie-1931-2deg", 1000.0), ("cie-1964-10deg", 900.0)];
 
 /// A light is like D65 if its white is this near in x, y. Smaller would refuse lamps that simulate D65 (FL7
 /// and ID65 are 0.003 away); larger would accept D60, 0.012 away, for which the formulas are not meant.
@@ -43,12 +44,12 @@ impl WhitenessScale {
     /// defined: for lights that do not have the color of D65, and observers other than those of 1931 and 1964.
     pub fn new(observer: &Observer, white: Xyz) -> Option<Self> {
         let is_it = |word: &str| Observer::named(word).is_ok_and(|o| o.name() == observer.name());
-        let (_, tint_by_y) = OBSERVERS.into_iter().find(|(word, _)| is_it(word))?;
+        let (_, tint_by_x) = OBSERVERS.into_iter().find(|(word, _)| is_it(word))?;
         let daylight = Contract { observer: observer.clone(), ..Contract::default() };
         let d65 = daylight.on(Grid::FIT).white().chromaticity()?;
         let [x, y] = white.chromaticity()?;
         let is_near = (x - d65[0]).hypot(y - d65[1]) <= LIKE_D65;
-        is_near.then_some(Self { white: [x, y], white_y: white.0[1], tint_by_y })
+        is_near.then_some(Self { white: [x, y], white_y: white.0[1], tint_by_x })
     }
 
     /// Whiteness and tint of a color; `None` beyond the limits that the CIE gives for the formulas: a whiteness
@@ -58,7 +59,7 @@ impl WhitenessScale {
         let [x, y] = xyz.chromaticity()?;
         let [dx, dy] = [self.white[0] - x, self.white[1] - y];
         let whiteness = luminance + 800.0 * dx + 1700.0 * dy;
-        let tint = 1000.0 * dx - self.tint_by_y * dy;
+        let tint = self.tint_by_x * dx - 650.0 * dy;
         let is_white = whiteness > 40.0 && whiteness < 5.0 * luminance - 280.0;
         (is_white && tint > -4.0 && tint < 2.0).then_some(Whiteness { whiteness, tint })
     }
@@ -91,9 +92,9 @@ mod tests {
 
     #[test]
     fn whiteness_has_the_values_of_colour_science() {
-        // The example of `colour.colorimetry.whiteness_CIE2004`, for 2°; for 10° by its formula.
-        for (tint_by_y, tint) in [(650.0, -1.305), (900.0, -0.73)] {
-            let scale = WhitenessScale { white: [0.3139, 0.3311], white_y: 1.0, tint_by_y };
+        // The example of `colour.colorimetry.whiteness_CIE2004` in colour-science 0.4.7, for each observer.
+        for ((_, tint_by_x), tint) in OBSERVERS.into_iter().zip([-1.305, -1.025]) {
+            let scale = WhitenessScale { white: [0.3139, 0.3311], white_y: 1.0, tint_by_x };
             let found = scale.of(Xyz::from_chromaticity([0.3167, 0.3334])).unwrap();
             // Rounding only.
             assert!((found.whiteness - 93.85).abs() < 1e-9 && (found.tint - tint).abs() < 1e-9);
