@@ -1,5 +1,6 @@
 //! `cargo xtask outputs`: every product of a program at a small size, to compare two programs.
 
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::fs;
@@ -177,7 +178,7 @@ struct Outputs<'a> {
 }
 
 impl Outputs<'_> {
-    /// An observer, a light and two dyes as CSV files.
+    /// An observer, a light, three dyes, a measured matrix and a list of colors as CSV files.
     fn write_inputs(&self) -> Result<(), StepError> {
         let rows = |columns: &dyn Fn(usize) -> String| -> String {
             (300..=830).step_by(5).map(|nm| format!("{nm},{}\n", columns(nm))).collect()
@@ -191,6 +192,24 @@ impl Outputs<'_> {
         self.write("inputs/observer.csv", &format!("wavelength_nm,x,y,z\n{observer}"))?;
         let light = rows(&|nm| format!("{}", nm + 1));
         self.write("inputs/light.csv", &format!("wavelength_nm,power\n{light}"))?;
+        self.write(
+            "inputs/colors.csv",
+            "name,r,g,b\nwhite,1,1,1\nmagenta,0.9,0,0.9\n,0.3,0.4,0.2\n",
+        )?;
+        let axis = |first: usize| (first..=780).step_by(20);
+        let shares = |out: usize| -> String {
+            let share = |nm: usize| match out.cmp(&nm) {
+                Ordering::Less => 0.0,
+                Ordering::Equal => 0.2 + bell(nm, 640) / 2.0,
+                Ordering::Greater => bell(nm, 480) * bell(out, 560) / 20.0,
+            };
+            axis(300).map(|nm| format!(",{}", share(nm))).collect()
+        };
+        let head: String = axis(300).map(|nm| format!(",{nm}")).collect();
+        let rows_of_matrix: String =
+            axis(380).map(|out| format!("{out}{}\n", shares(out))).collect();
+        let matrix = format!("outgoing_nm\\incident_nm per_band{head}\n{rows_of_matrix}");
+        self.write("inputs/matrix.csv", &matrix)?;
         for (name, peak) in [("green", 480), ("red", 560), ("violet", 380)] {
             let dye = rows(&|nm| format!("{},{}", bell(nm, peak), bell(nm, peak + 50)));
             let text = format!("wavelength_nm,absorption,emission\n{dye}");
