@@ -47,6 +47,7 @@ mod rgb_space;
 #[doc(hidden)]
 pub mod rounding;
 mod samples;
+mod screen;
 mod spectrum;
 mod srgb_curve;
 mod standing;
@@ -85,6 +86,7 @@ pub use names::NameError;
 pub use observer::{Observer, ObserverError};
 pub use rgb_space::{RgbSpace, RgbSpaceError};
 pub use samples::{Ends, SampleRules, SamplesError};
+pub use screen::{Screen, Shown};
 pub use spectrum::{Spectrum, SpectrumCsvError, SpectrumError, read_columns};
 pub use srgb_curve::{srgb_decoded, srgb_encoded};
 pub use standing::{ColorSolids, Standing, StandingKind};

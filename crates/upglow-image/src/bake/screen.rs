@@ -2,19 +2,18 @@
 
 use upglow::Cube;
 use upglow_color::rounding::to_single;
-use upglow_color::{Grid, Illuminant, srgb_encoded};
+use upglow_color::{Grid, Illuminant, Screen, srgb_encoded};
 
 use super::blends::Blends;
 use super::maker::{Filled, Maker};
 use super::radiance::NAMES;
-use crate::check::display::Display;
 use crate::exr::attribute::Attributes;
 
 /// For each texel the color of its blend under a light, as encoded sRGB.
 #[derive(Debug)]
 pub(super) struct ScreenMaker<'c> {
     blends: Blends<'c>,
-    display: Display,
+    screen: Screen,
     /// Factor of the light.
     exposure: f64,
 }
@@ -24,7 +23,7 @@ impl<'c> ScreenMaker<'c> {
         let seen = cube.contract().seen_under(light, Grid::FIT);
         Self {
             blends: Blends::new(cube, &seen.colorimetry),
-            display: Display::with_white(&seen.colorimetry, seen.white),
+            screen: Screen::srgb(seen.white),
             exposure: exposure_stops.exp2(),
         }
     }
@@ -43,9 +42,9 @@ impl Maker for ScreenMaker<'_> {
     fn fill(&self, rgb: &[[f32; 3]], planes: &mut [&mut [f32]]) -> Filled {
         let mut beyond_screen = 0;
         for (i, xyz) in self.blends.xyz(rgb).into_iter().enumerate() {
-            let (shown, was_outside) = self.display.within(self.exposure * xyz);
-            beyond_screen += u64::from(was_outside);
-            (0..3).for_each(|k| planes[k][i] = to_single(srgb_encoded(shown[k])));
+            let shown = self.screen.within(self.exposure * xyz);
+            beyond_screen += u64::from(shown.beyond > 0.0);
+            (0..3).for_each(|k| planes[k][i] = to_single(srgb_encoded(shown.rgb.0[k])));
         }
         Filled { kinds: Some(self.blends.kinds(rgb)), beyond_screen }
     }
