@@ -1,7 +1,9 @@
 //! Building blocks of text reports: lines of names and values, and tables.
 
 use std::fmt::{self, Display};
+use std::io::Write as _;
 
+use upglow::Cube;
 use upglow_color::MissingUltraviolet;
 use upglow_fit::{CubeSummary, KindCounts, MaterialKind};
 use upglow_terminal::size;
@@ -16,6 +18,11 @@ pub(crate) fn warn_of_ultraviolet(missing: Option<MissingUltraviolet>) -> Option
     let text = missing?.to_string();
     warn(&text);
     Some(text)
+}
+
+/// The same for a cube and the light that its colors are under.
+pub(crate) fn warn_of_own_light(cube: &Cube) -> Option<String> {
+    warn_of_ultraviolet(cube.model().missing_ultraviolet(&cube.contract().illuminant))
 }
 
 /// Prints on standard error what is wrong with one picture of several.
@@ -161,6 +168,23 @@ pub(crate) fn quoted(text: &str) -> String {
     }
 }
 
+/// Adds a comma and a cell of a CSV file: a number with as many digits as are needed to read it back exactly and
+/// without an exponent, nothing for NaN. `Display` takes more than twice as long for the same digits, but for the
+/// last one of a few fractions of powers of 2, halfway between two that would do.
+pub(crate) fn push_cell(text: &mut Vec<u8>, value: f64) {
+    text.push(b',');
+    let start = text.len();
+    // Writing to memory cannot fail.
+    let _ = serde_json::to_writer(&mut *text, &value);
+    let written = &text[start..];
+    if written.ends_with(b".0") {
+        text.truncate(text.len() - 2);
+    } else if written.contains(&b'e') || !value.is_finite() {
+        text.truncate(start);
+        let _ = if value.is_nan() { Ok(()) } else { write!(text, "{value}") };
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -182,6 +206,26 @@ mod tests {
     #[test]
     fn zero_has_no_sign() {
         assert_eq!(triple([-1e-9, 0.5, -0.25]), " 0.0000   0.5000  -0.2500");
+    }
+
+    #[test]
+    fn cells_are_as_short_as_display_and_are_read_back_exactly() {
+        let cell = |value: f64| {
+            let mut text = Vec::new();
+            push_cell(&mut text, value);
+            let text = String::from_utf8(text).unwrap();
+            text.strip_prefix(',').unwrap().to_owned()
+        };
+        let ends = [0.0, -0.0, 1.0, -2.0, 0.1, 1e-5, 1e-7, -1.7e-17, 1e16, 1e300, 5e-324];
+        // All digits, over all sizes that colors have.
+        let sizes = (-60..20).map(|power| 2.0_f64.powi(power));
+        let many = sizes.flat_map(|size| (1..500).map(move |i| f64::from(i) / 6.0 * size));
+        for value in ends.into_iter().chain(many).chain([f64::INFINITY]) {
+            let (found, expected) = (cell(value), value.to_string());
+            assert_eq!(found.len(), expected.len(), "{found} {expected}");
+            assert_eq!(found.parse::<f64>().unwrap().to_bits(), value.to_bits(), "{found}");
+        }
+        assert_eq!([cell(f64::NAN), cell(1e-7), cell(3.0)], ["", "0.0000001", "3"]);
     }
 
     #[test]

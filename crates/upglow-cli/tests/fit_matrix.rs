@@ -110,5 +110,7 @@ fn a_measured_sample_of_the_bfc_450_is_fitted() {
     let report =
         Folder::new().json(&format!("fit-matrix {} --light A --light FL2", file.display()));
     assert!(report["max_de2000"].as_f64().is_some_and(|most| most < 1.0), "{report}");
-    assert_eq!(report["without_ultraviolet"][0], "FL2");
+    let missing = |light: usize| report["lights"][light]["missing_ultraviolet"].as_str();
+    let fl2 = "FL2 is given from 380 nm on: what dyes absorb below is not counted";
+    assert_eq!([missing(0), missing(1)], [None, Some(fl2)]);
 }

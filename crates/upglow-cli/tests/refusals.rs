@@ -165,6 +165,22 @@ fn lights_that_end_early() {
     let missing = |light: usize| told["lights"][light]["missing_ultraviolet"].as_str();
     let fl11 = "FL11 is given from 380 nm on: what dyes absorb below is not counted";
     assert_eq!([missing(0), missing(1)], [None, Some(fl11)]);
+    // The light of a cube.
+    folder.run("build --resolution 2 -o lit --illuminant FL11");
+    folder.done("build --resolution 2 -o plain --illuminant FL11 --preset jakob2019");
+    for command in ["inspect", "verify --points 10", "export --format csv"] {
+        let command = |cube: &str| match command {
+            "export --format csv" => format!("{command} {cube} {cube}.csv"),
+            _ => format!("{command} {cube}"),
+        };
+        let run = folder.run(&format!("--json {}", command("lit")));
+        assert_eq!(run.stderr, format!("upglow: warning: {fl11}\n"));
+        let told: serde_json::Value = serde_json::from_str(&run.stdout).unwrap();
+        assert_eq!(told["missing_ultraviolet"], fl11);
+        assert_eq!(folder.json(&command("plain"))["missing_ultraviolet"], serde_json::Value::Null);
+    }
+    let coefficients = folder.run("export lit lit.coeff --resolution 4");
+    assert!(!coefficients.stderr.contains("FL11"), "{coefficients:?}");
     let line = folder.refused(2, "inspect cube --light-ends zero");
     assert!(line.starts_with("--light-ends: given for a cube"), "{line}");
     // Gray has no dye.

@@ -2,7 +2,7 @@
 
 use crate::choices;
 use crate::contract::{Contract, ContractError};
-use crate::illuminant::Illuminant;
+use crate::illuminant::{Illuminant, MissingUltraviolet};
 use crate::observer::Observer;
 use crate::values::Xyz;
 
@@ -273,6 +273,19 @@ impl DonaldsonMatrix {
         (!found.is_empty()).then_some([mean_square.sqrt(), greatest])
     }
 
+    /// What is to say about this matrix under a light: ultraviolet that is not known, where light arrives that the
+    /// matrix moves to other wavelengths.
+    pub fn missing_ultraviolet(&self, light: &Illuminant) -> Option<MissingUltraviolet> {
+        light.missing_ultraviolet().filter(|missing| {
+            let short = self.incident_nm.iter().take_while(|nm| **nm < f64::from(missing.from_nm));
+            let mut short = short.enumerate();
+            short.any(|(i, in_nm)| {
+                let mut leaving = self.outgoing_nm.iter().zip(&self.factors);
+                leaving.any(|(out_nm, row)| out_nm > in_nm && row[i] > 0.0)
+            })
+        })
+    }
+
     /// The color under a light, where the perfect diffuser has Y = 1.
     ///
     /// # Errors
@@ -406,6 +419,19 @@ mod tests {
             BispectralUnit::PerBand,
         );
         assert_eq!(blue.unwrap().noise(), None);
+    }
+
+    #[test]
+    fn ultraviolet_is_missing_where_the_matrix_moves_light_of_it() {
+        let missing = |from_nm: f64, light: &str| {
+            let light = Illuminant::named(light).unwrap();
+            let moves = matrix(|o, i| if o == i { 0.5 } else { f64::from(i == from_nm && o > i) });
+            moves.missing_ultraviolet(&light).map(|missing| missing.from_nm)
+        };
+        assert_eq!(missing(370.0, "FL2"), Some(380));
+        assert_eq!(missing(300.0, "FL2"), Some(380));
+        assert_eq!(missing(380.0, "FL2"), None);
+        assert_eq!(missing(370.0, "D65"), None);
     }
 
     #[test]

@@ -51,10 +51,8 @@ impl CubeData {
         let Shader { source: script, mut payload } = Shader::new(cube, Language::JavaScript, NAME)?;
         let shader = Shader::new(cube, Language::Wgsl, NAME)?.source;
         let textures = payload.pop().map(|file| file.bytes).unwrap_or_default();
-        let shown: Vec<ShownLight> = lights(cube.contract())
-            .iter()
-            .map(|light| ShownLight::new(cube.contract(), light))
-            .collect();
+        let shown: Vec<ShownLight> =
+            lights(cube.contract()).iter().map(|light| ShownLight::new(cube, light)).collect();
         let mut tensors = vec![Tensor::bytes("textures", &[textures.len()], textures)];
         tensors.extend(node_tensors(cube));
         tensors.extend(light_tensors(&shown));
@@ -183,8 +181,7 @@ mod tests {
         let fit = upglow::FitRecord::default();
         let cube = Cube::new(contract, upglow::Model::Reflectance, fit, 2, nodes).unwrap();
         let lights = lights(cube.contract());
-        let shown: Vec<_> =
-            lights.iter().map(|light| ShownLight::new(cube.contract(), light)).collect();
+        let shown: Vec<_> = lights.iter().map(|light| ShownLight::new(&cube, light)).collect();
         let names = description(&cube, "", &shown)["spaces"].clone();
         let names: Vec<&str> =
             names.as_array().unwrap().iter().filter_map(|space| space["name"].as_str()).collect();

@@ -61,6 +61,17 @@ impl<'c> Relighting<'c> {
         Self { cube, materials, blends }
     }
 
+    /// A blend that the cube returned.
+    pub fn of_mixture(cube: &'c Cube, mixture: &Mixture<'c>) -> Self {
+        let mut blend = [NOTHING; 4];
+        let mut materials = Vec::new();
+        for (place, (weight, material)) in mixture.parts().enumerate() {
+            blend[place] = (place, weight);
+            materials.push(material);
+        }
+        Self { cube, materials, blends: vec![blend] }
+    }
+
     /// What is to say about these materials under a light: ultraviolet that is not known, where a dye in one of
     /// them absorbs.
     pub fn missing_ultraviolet(&self, light: &Illuminant) -> Option<MissingUltraviolet> {

@@ -3,14 +3,16 @@
 use std::path::Path;
 
 use upglow::{Cube, Interpolation, Mixture, ModelOnGrid};
-use upglow_color::{ColorSolids, Colorimetry, Contract, Grid, Illuminant, LinearRgb, Metric, Xyz};
-use upglow_fit::{FitOptions, Fitter, MaterialKind};
+use upglow_color::{
+    ColorSolids, Colorimetry, Contract, Grid, Illuminant, LinearRgb, Metric, Screen, Xyz,
+};
+use upglow_fit::{FitOptions, Fitter, MaterialKind, Relighting, View};
 use upglow_terminal::{Console, Failure};
 
 use super::color_report::{ColorReport, LightReport, PartReport};
 use crate::args::ColorArgs;
 use crate::output::warn_of_ultraviolet;
-use crate::plot::{Curves, Figure, Swatch, screen, svg};
+use crate::plot::{Curves, Figure, Swatch, svg};
 use crate::{files, plan};
 
 pub(crate) fn run(args: &ColorArgs, console: &Console) -> Result<(), Failure> {
@@ -109,43 +111,28 @@ impl<'a> Shown<'a> {
         self.mixture.parts().map(|part| PartReport::new(part, self.cube.model())).collect()
     }
 
-    /// The color of the material under the cube's own light and the others.
+    /// How the material looks under the cube's own light and the others.
     fn lights(&self) -> Vec<LightReport> {
-        let contract = self.cube.contract();
-        let own = &contract.illuminant;
-        let mut lights = vec![self.under(own, true, &self.colorimetry)];
-        lights.extend(self.lights.iter().filter(|light| light.name() != own.name()).map(|light| {
-            let seen = contract.seen_under(light, Grid::FIT);
-            self.under(light, seen.is_adapted, &seen.colorimetry)
-        }));
-        lights
-    }
-
-    fn under(
-        &self,
-        light: &Illuminant,
-        is_adapted: bool,
-        colorimetry: &Colorimetry,
-    ) -> LightReport {
-        let xyz = self.mixture.color(&ModelOnGrid::new(self.cube.model(), colorimetry));
-        LightReport {
-            name: light.name().into(),
-            is_adapted,
-            xyz,
-            rgb: colorimetry.rgb_from_xyz(xyz),
-            missing_ultraviolet: warn_of_ultraviolet(self.mixture.missing_ultraviolet(light)),
-        }
+        let Contract { illuminant: own, observer, .. } = self.cube.contract();
+        let relighting = Relighting::of_mixture(self.cube, self.mixture);
+        let seen_by = relighting.seen_by(observer).expect("its observer sees its light");
+        let others = self.lights.iter().filter(|light| light.name() != own.name());
+        let under = |light: &Illuminant| {
+            let View { seen, appearances } = seen_by.under(light);
+            LightReport {
+                name: light.name().into(),
+                is_adapted: seen.is_adapted,
+                appearance: appearances[0],
+                missing_ultraviolet: warn_of_ultraviolet(self.mixture.missing_ultraviolet(light)),
+            }
+        };
+        std::iter::once(own).chain(others).map(under).collect()
     }
 
     fn figure(&self) -> Figure<'_> {
-        let screen = screen(self.cube.contract()).on(Grid::FIT);
-        let swatch = |xyz| Swatch::from_linear(screen.rgb_from_xyz(xyz));
-        Figure {
-            curves: &self.curves,
-            target: swatch(self.target),
-            result: swatch(self.color),
-            caption: self.caption(),
-        }
+        let screen = Screen::srgb(self.colorimetry.white());
+        let [target, result] = screen.together([self.target, self.color]).map(Swatch::of);
+        Figure { curves: &self.curves, target, result, caption: self.caption() }
     }
 
     /// The lines below the swatches of the figure.

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use upglow::{Features, Fluorescence, Interpolation, Material, Model, Sigmoid, Vertex};
 use upglow_color::{Adaptation, LinearRgb, Nearest, Standing, StandingKind, Xyz};
-use upglow_fit::{CubeSummary, MaterialKind};
+use upglow_fit::{Appearance, CubeSummary, MaterialKind};
 use upglow_terminal::Report;
 
 use super::material_report::{ReflectanceReport, dye_names};
@@ -81,15 +81,15 @@ enum FluorescenceReport<'a> {
     },
 }
 
-/// The material's color under one light.
+/// How the material looks under one light.
 #[derive(Debug, Serialize)]
 pub(crate) struct LightReport {
     pub(crate) name: String,
     /// Whether the observer is adapted to it, so that white has Y = 1; otherwise it has as much power as
     /// the cube's light, and the observer is adapted to that.
     pub(crate) is_adapted: bool,
-    pub(crate) xyz: Xyz,
-    pub(crate) rgb: LinearRgb,
+    #[serde(flatten)]
+    pub(crate) appearance: Appearance,
     /// What the light lacks that a dye of the material absorbs.
     pub(crate) missing_ultraviolet: Option<String>,
 }
@@ -305,17 +305,30 @@ impl ColorReport<'_> {
     }
 
     fn colors(&self) -> String {
-        let head = ["light", "X        Y        Z", "R        G        B"];
-        let sides = [Side::Left, Side::Right, Side::Right];
-        let mut table = Table::new([0, 1, 2].map(|column| (head[column], sides[column])));
-        for light in &self.lights {
-            table.add([light.name.clone(), triple(light.xyz.0), triple(light.rgb.0)]);
+        let mut table = Table::new([
+            ("light", Side::Left),
+            ("X        Y        Z", Side::Right),
+            ("R        G        B", Side::Right),
+            ("fluorescent", Side::Right),
+        ]);
+        for LightReport { name, appearance, .. } in &self.lights {
+            let Appearance { xyz, rgb, fluorescent_share, .. } = appearance;
+            let fluorescent = percent(*fluorescent_share);
+            table.add([name.clone(), triple(xyz.0), triple(rgb.0), fluorescent]);
         }
         let Self { rgb_space: space, illuminant: own, adaptation, .. } = self;
         let dark = self.lights.iter().filter(|light| !light.is_adapted);
         let dark: Vec<&str> = dark.map(|light| light.name.as_str()).collect();
-        format!("{table}{}", scale_note(space, own, *adaptation, &dark))
+        format!("{table}{}{SHARE_NOTE}\n", scale_note(space, own, *adaptation, &dark))
     }
+}
+
+/// What is in the column `fluorescent`.
+pub(super) const SHARE_NOTE: &str = "fluorescent: share of Y that dyes emit.";
+
+/// A share in percent; empty where it is not defined.
+pub(super) fn percent(share: Option<f64>) -> String {
+    share.map_or(String::new(), |share| format!("{:.1} %", 100.0 * share))
 }
 
 /// What RGB and Y mean under lights, some of which are too `dark` to see by.

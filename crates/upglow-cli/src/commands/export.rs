@@ -14,7 +14,7 @@ use upglow_terminal::{Console, Failure, Report};
 use super::material_report::{dye_names, unsigned_zeros};
 use crate::args::{ExportArgs, ExportFormat, SlopeLimit, limit_text};
 use crate::files;
-use crate::output::{Lines, quoted, warn};
+use crate::output::{Lines, quoted, warn, warn_of_own_light};
 use crate::plan::refuse_ignored;
 
 const HEADER: &str = "r,g,b,c0,c1,c2,shift_nm,width_nm,slope_per_nm,dye_a,dye_b,weight,\
@@ -31,6 +31,8 @@ struct ExportReport {
     slope_max_per_nm: Option<SlopeLimit>,
     /// Files that the exported file refers to.
     textures: Vec<String>,
+    /// What the cube's light lacks that its dyes absorb.
+    missing_ultraviolet: Option<String>,
 }
 
 pub(crate) fn run(args: &ExportArgs, console: &Console) -> Result<(), Failure> {
@@ -38,6 +40,9 @@ pub(crate) fn run(args: &ExportArgs, console: &Console) -> Result<(), Failure> {
     files::check_ending(&args.output, &[kind.name()])?;
     files::check_output_of(&args.output, Some(&args.file), &files::really(&[]))?;
     let cube = files::read_cube(&args.file)?;
+    // A coefficient table has no dyes.
+    let has_dyes = kind != ExportFormat::Coeff;
+    let missing_ultraviolet = has_dyes.then(|| warn_of_own_light(&cube)).flatten();
     let mut textures = Vec::new();
     let (bytes, nodes) = match kind {
         ExportFormat::Csv => (csv(&cube).into_bytes(), cube.nodes().len()),
@@ -57,6 +62,7 @@ pub(crate) fn run(args: &ExportArgs, console: &Console) -> Result<(), Failure> {
         nodes,
         slope_max_per_nm: (kind == ExportFormat::Coeff).then(|| table_limit(args)),
         textures,
+        missing_ultraviolet,
     })
 }
 

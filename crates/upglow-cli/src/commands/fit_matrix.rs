@@ -138,15 +138,22 @@ struct MatrixReport {
     noise: Option<Noise>,
     reflectance: ReflectanceReport,
     dyes: Vec<DyeReport>,
-    lights: Vec<MatrixDifference>,
-    /// Those whose power is not known at the first incident wavelengths, where it counts as none.
-    without_ultraviolet: Vec<String>,
+    lights: Vec<LightReport>,
     mean_de2000: f64,
     max_de2000: f64,
     plot: Option<String>,
     output: Option<String>,
     /// Share of the power that arrives in a band that leaves in another, `[outgoing][incident]`.
     fitted_per_band: Vec<Vec<f64>>,
+}
+
+/// How far the material is from the matrix under a light.
+#[derive(Clone, Debug, Serialize)]
+struct LightReport {
+    #[serde(flatten)]
+    difference: MatrixDifference,
+    /// What the light lacks that the matrix moves to other wavelengths.
+    missing_ultraviolet: Option<String>,
 }
 
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -194,8 +201,12 @@ impl MatrixReport {
             |path: &Option<std::path::PathBuf>| path.as_ref().map(|p| p.display().to_string());
         let noise = |[root_mean_square, greatest]: [f64; 2]| Noise { root_mean_square, greatest };
         let each = || differences.iter().map(|light| light.de2000);
-        let first_nm = measured.incident_nm()[0];
-        let is_short = |light: &&Illuminant| f64::from(light.given_nm()[0]) > first_nm;
+        let (mean_de2000, max_de2000) =
+            (each().sum::<f64>() / differences.len() as f64, each().fold(0.0, f64::max));
+        let under = |(light, difference): (&Illuminant, MatrixDifference)| LightReport {
+            difference,
+            missing_ultraviolet: measured.missing_ultraviolet(light).map(|m| m.to_string()),
+        };
         Self {
             file: args.file.display().to_string(),
             incident: Axis::of(measured.incident_nm()),
@@ -205,14 +216,17 @@ impl MatrixReport {
             noise: measured.noise().map(noise),
             reflectance: fit.material().reflectance.into(),
             dyes: fit.model().dyes().map_or_else(Vec::new, |dyes| dye_reports(fit, dyes)),
-            without_ultraviolet: lights.iter().filter(is_short).map(|l| l.name().into()).collect(),
-            mean_de2000: each().sum::<f64>() / differences.len() as f64,
-            max_de2000: each().fold(0.0, f64::max),
+            mean_de2000,
+            max_de2000,
             plot: path(&args.plot),
             output: path(&args.output),
             fitted_per_band: fit.matrix().factors().to_vec(),
-            lights: differences,
+            lights: lights.iter().zip(differences).map(under).collect(),
         }
+    }
+
+    fn differences(&self) -> impl Iterator<Item = &MatrixDifference> {
+        self.lights.iter().map(|light| &light.difference)
     }
 
     /// The lines beside the figure.
@@ -220,7 +234,7 @@ impl MatrixReport {
         let mut lines =
             vec![format!("mean ΔE00 {:.2} over {} lights", self.mean_de2000, self.lights.len())];
         lines.extend(
-            self.lights.iter().map(|light| format!("{}: {:.2}", light.light, light.de2000)),
+            self.differences().map(|light| format!("{}: {:.2}", light.light, light.de2000)),
         );
         lines.push(String::new());
         for dye in &self.dyes {
@@ -307,7 +321,7 @@ impl Report for MatrixReport {
             right("X        Y        Z"),
             right("fitted X        Y        Z"),
         ]);
-        for light in &self.lights {
+        for light in self.differences() {
             colors.add([
                 light.light.clone(),
                 format!("{:.2}", light.de2000),
@@ -317,7 +331,7 @@ impl Report for MatrixReport {
             ]);
         }
         let dark: Vec<&str> =
-            self.lights.iter().filter(|l| !l.is_adapted).map(|l| l.light.as_str()).collect();
+            self.differences().filter(|l| !l.is_adapted).map(|l| l.light.as_str()).collect();
         let note = match dark.as_slice() {
             [] => String::new(),
             dark => format!(
@@ -325,17 +339,12 @@ impl Report for MatrixReport {
                 dark.join(", ")
             ),
         };
-        let short = match self.without_ultraviolet.as_slice() {
-            [] => String::new(),
-            names => format!(
-                "{}: no power is known at the shortest wavelengths, none is counted.\n",
-                names.join(", ")
-            ),
-        };
+        let missing = self.lights.iter().filter_map(|light| light.missing_ultraviolet.as_ref());
+        let missing: String = missing.map(|sentence| format!("{sentence}.\n")).collect();
         let (mean, max) = (self.mean_de2000, self.max_de2000);
         format!(
             "{lines}\n{dyes}\n{colors}mean {mean:.2}, greatest {max:.2} ΔE00. Noise: what leaving out all \
-             below the diagonal would change.\n{note}{short}"
+             below the diagonal would change.\n{note}{missing}"
         )
     }
 }

@@ -11,7 +11,7 @@ use upglow_terminal::{Console, Failure, Report};
 use super::inspect_table;
 use crate::args::{InspectArgs, SlopeLimits};
 use crate::files;
-use crate::output::{Lines, Side, Table};
+use crate::output::{Lines, Side, Table, warn_of_own_light};
 
 #[derive(Debug, Serialize)]
 struct InspectReport<'a> {
@@ -23,6 +23,8 @@ struct InspectReport<'a> {
     fit: &'a FitRecord,
     summary: CubeSummary,
     seams: Vec<Seam>,
+    /// What the cube's light lacks that its dyes absorb.
+    missing_ultraviolet: Option<String>,
 }
 
 #[derive(Debug, Serialize)]
@@ -77,6 +79,7 @@ pub(crate) fn run(args: InspectArgs, console: &Console) -> Result<(), Failure> {
         fit: cube.fit(),
         summary: CubeSummary::of(&cube),
         seams: seams(&cube),
+        missing_ultraviolet: warn_of_own_light(&cube),
     })
 }
 

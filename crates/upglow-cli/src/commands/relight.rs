@@ -1,11 +1,10 @@
 //! `upglow relight`: how the materials of a cube look under lights, to observers.
 
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 use upglow::Cube;
-use upglow_color::{Contract, ContractError, Grid, Illuminant, LinearRgb, Observer, Whiteness};
+use upglow_color::{Contract, ContractError, Illuminant, LinearRgb, Observer, Screen, Xyz};
 use upglow_fit::{Appearance, Relighting, View};
 use upglow_terminal::{Console, Failure, check_stopped};
 
@@ -13,13 +12,16 @@ use super::color::fitter_of;
 use super::relight_report::{RelightReport, ViewReport};
 use crate::args::RelightArgs;
 use crate::color_list::{self, NamedColor};
-use crate::output::{quoted, warn_of_ultraviolet};
+use crate::output::{push_cell, quoted, warn_of_ultraviolet};
+use crate::plot::Swatch;
 use crate::plot::swatches::{self, Chart, Column};
-use crate::plot::{Swatch, screen};
 use crate::{files, plan};
 
-/// More would take gigabytes: each takes 150 bytes of memory and 300 of a CSV file.
+/// More would take gigabytes: each takes 150 bytes of memory and [`ROW_BYTES`] of a CSV file, twice.
 const MOST_ROWS: usize = 2_000_000;
+
+/// Space for a line of a CSV file. With less, lines are moved while they are written; more is memory in vain.
+const ROW_BYTES: usize = 300;
 
 /// Colors that are drawn, or printed as text.
 pub(super) const MOST_SHOWN: usize = 64;
@@ -52,13 +54,13 @@ pub(crate) fn run(args: &RelightArgs, console: &Console) -> Result<(), Failure> 
     check_rows(colors.len(), lights.len(), observers.len())?;
     let seen = console.work(args.threads, |_| {
         let relighting = relighting(&cube, &colors, args)?;
-        let views = views(&cube, &relighting, &lights, &observers)?;
+        let views = views(&relighting, &lights, &observers)?;
         let csv = args.csv.as_ref().map(|_| csv(&colors, &views));
         Ok::<_, Failure>((views, csv))
     })?;
     let (views, csv) = seen?;
     if let (Some(path), Some(text)) = (&args.csv, &csv) {
-        files::write(path, text.as_bytes())?;
+        files::write(path, text)?;
     }
     if let Some(path) = &args.plot {
         files::write(path, swatches::draw(&chart(&cube, &colors, &views, args)).as_bytes())?;
@@ -143,7 +145,6 @@ fn relighting<'c>(
 
 /// Each light for each observer.
 fn views(
-    cube: &Cube,
     relighting: &Relighting<'_>,
     lights: &[Illuminant],
     observers: &[Observer],
@@ -163,7 +164,7 @@ fn views(
                 is_adapted: seen.is_adapted,
                 white: seen.white,
                 missing_ultraviolet: missing.clone(),
-                swatches: swatches_of(cube, light, observer, &appearances),
+                swatches: swatches_of(seen.white, &appearances),
                 appearances,
             });
         }
@@ -171,47 +172,44 @@ fn views(
     Ok(views)
 }
 
-/// The first colors as a screen shows them.
-fn swatches_of(
-    cube: &Cube,
-    light: &Illuminant,
-    observer: &Observer,
-    appearances: &[Appearance],
-) -> Vec<Swatch> {
-    let screen = Contract { observer: observer.clone(), ..screen(cube.contract()) };
-    let seen = screen.seen_under(light, Grid::FIT);
+/// The first colors as a screen shows them, of which `white` is the white.
+fn swatches_of(white: Xyz, appearances: &[Appearance]) -> Vec<Swatch> {
+    let screen = Screen::srgb(white);
     let shown = appearances.iter().take(MOST_SHOWN);
-    shown.map(|a| Swatch::from_linear(seen.colorimetry.rgb_from_xyz(a.xyz))).collect()
+    shown.map(|seen| Swatch::of(screen.within(seen.xyz))).collect()
 }
 
 /// A line for each color under each light, light by light. Numbers have as many digits as are needed to read them
 /// back exactly; cells of what is not defined are empty.
-fn csv(colors: &[NamedColor], views: &[ViewReport]) -> String {
+fn csv(colors: &[NamedColor], views: &[ViewReport]) -> Vec<u8> {
+    // The same under every light.
+    let start = |NamedColor { name, rgb: LinearRgb(rgb) }: &NamedColor| {
+        let mut text = quoted(name).into_bytes();
+        rgb.iter().for_each(|&value| push_cell(&mut text, value));
+        text
+    };
+    let starts: Vec<Vec<u8>> = colors.par_iter().map(start).collect();
     let block = |view: &ViewReport| {
         let (light, observer) = (quoted(&view.light), quoted(&view.observer));
-        let mut text = String::new();
-        for (color, seen) in colors.iter().zip(&view.appearances) {
-            let LinearRgb([r, g, b]) = color.rgb;
-            let _ = write!(text, "{},{r},{g},{b},", quoted(&color.name));
-            let _ = write!(text, "{light},{observer},{},", view.is_adapted);
-            let [x, y, z] = seen.xyz.0;
-            let LinearRgb([r, g, b]) = seen.rgb;
-            let _ = write!(text, "{x},{y},{z},{},{},{},", seen.lab.l, seen.lab.a, seen.lab.b);
-            let _ = write!(text, "{r},{g},{b}");
-            let Whiteness { whiteness, tint } =
-                seen.whiteness.unwrap_or(Whiteness { whiteness: f64::NAN, tint: f64::NAN });
-            let defined = |value: Option<f64>| value.unwrap_or(f64::NAN);
-            for value in [defined(seen.de2000), defined(seen.fluorescent_share), whiteness, tint] {
-                text.push(',');
-                // Writing to a string cannot fail.
-                let _ = if value.is_nan() { Ok(()) } else { write!(text, "{value}") };
+        let of_view = format!(",{light},{observer},{}", view.is_adapted);
+        let mut text = Vec::with_capacity(ROW_BYTES * colors.len());
+        for (start, seen) in starts.iter().zip(&view.appearances) {
+            text.extend_from_slice(start);
+            text.extend_from_slice(of_view.as_bytes());
+            let Appearance { xyz: Xyz([x, y, z]), lab, rgb: LinearRgb([r, g, b]), .. } = *seen;
+            for value in [x, y, z, lab.l, lab.a, lab.b, r, g, b] {
+                push_cell(&mut text, value);
             }
-            text.push('\n');
+            let whiteness = [seen.whiteness.map(|w| w.whiteness), seen.whiteness.map(|w| w.tint)];
+            let maybe = [seen.de2000, seen.fluorescent_share].into_iter().chain(whiteness);
+            maybe.for_each(|value| push_cell(&mut text, value.unwrap_or(f64::NAN)));
+            text.push(b'\n');
         }
         text
     };
-    let blocks: Vec<String> = views.par_iter().map(block).collect();
-    format!("{HEADER}\n{}", blocks.concat())
+    let header = format!("{HEADER}\n").into_bytes();
+    let blocks = views.par_iter().map(block);
+    rayon::iter::once(header).chain(blocks).collect::<Vec<_>>().concat()
 }
 
 fn chart(cube: &Cube, colors: &[NamedColor], views: &[ViewReport], args: &RelightArgs) -> Chart {

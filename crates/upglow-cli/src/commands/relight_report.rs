@@ -5,7 +5,7 @@ use upglow_color::{Adaptation, Xyz};
 use upglow_fit::Appearance;
 use upglow_terminal::Report;
 
-use super::color_report::scale_note;
+use super::color_report::{SHARE_NOTE, percent, scale_note};
 use super::relight::MOST_SHOWN;
 use crate::color_list::NamedColor;
 use crate::output::{Lines, Side, Table, decimal, triple};
@@ -72,14 +72,13 @@ impl RelightReport<'_> {
             let some = |value: Option<f64>, decimals| {
                 value.map_or(String::new(), |value| decimal(value, 0, decimals))
             };
-            let percent = fluorescent_share.map(|share| format!("{:.1} %", 100.0 * share));
             table.add([
                 format!("{}{observer}", view.light),
                 triple(xyz.0),
                 [lab.l, lab.a, lab.b].map(|v| decimal(v, 6, 2)).join("  "),
                 triple(rgb.0),
                 some(de2000, 2),
-                percent.unwrap_or_default(),
+                percent(fluorescent_share),
                 some(whiteness.map(|w| w.whiteness), 1),
                 some(whiteness.map(|w| w.tint), 1),
             ]);
@@ -102,7 +101,7 @@ impl RelightReport<'_> {
         text += &scale_note(self.rgb_space, self.illuminant, self.adaptation, &dark);
         text += &format!(
             "L* a* b* are relative to white. ΔE00: difference from the color under {}, each as seen by an\n\
-             observer adapted to the light. fluorescent: share of Y that dyes emit. W, T: whiteness and tint\n\
+             observer adapted to the light. {SHARE_NOTE} W, T: whiteness and tint\n\
              of the CIE, of whites under light like D65.\n",
             self.illuminant
         );

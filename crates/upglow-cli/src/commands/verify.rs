@@ -7,7 +7,7 @@ use upglow_terminal::{Console, Failure, Report};
 
 use crate::args::VerifyArgs;
 use crate::files;
-use crate::output::{Side, Table};
+use crate::output::{Side, Table, warn_of_own_light};
 
 #[derive(Debug, Serialize)]
 struct VerificationReport<'a> {
@@ -18,6 +18,8 @@ struct VerificationReport<'a> {
     points: usize,
     holds: bool,
     checks: &'a [Check],
+    /// What the cube's light lacks that its dyes absorb.
+    missing_ultraviolet: Option<String>,
 }
 
 pub(crate) fn run(args: &VerifyArgs, console: &Console) -> Result<(), Failure> {
@@ -33,6 +35,7 @@ pub(crate) fn run(args: &VerifyArgs, console: &Console) -> Result<(), Failure> {
         points: report.points,
         holds: report.holds(),
         checks: &report.checks,
+        missing_ultraviolet: warn_of_own_light(&cube),
     })?;
     match report.broken().next() {
         None => Ok(()),

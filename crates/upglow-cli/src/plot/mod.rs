@@ -5,7 +5,7 @@ pub(crate) mod svg;
 pub(crate) mod swatches;
 
 use upglow::{Bispectral, Material, Mixture, Model, Sigmoid};
-use upglow_color::{Adaptation, Colorimetry, Contract, Grid, LinearRgb, RgbSpace, srgb_encoded};
+use upglow_color::{Colorimetry, Grid, Shown, srgb_encoded};
 use upglow_svg::{byte, hex};
 
 /// First wavelength of every figure, nm.
@@ -103,28 +103,19 @@ pub(crate) struct Figure<'a> {
 pub(crate) struct Swatch {
     /// `#rrggbb`.
     pub(crate) hex: String,
-    /// Whether the color is outside sRGB.
-    pub(crate) clipped: bool,
+    /// Whether the color itself is outside sRGB, and this one grayer.
+    pub(crate) is_outside: bool,
 }
 
-/// How a screen shows the colors of a contract: in sRGB, adapted to the light.
-pub(crate) fn screen(contract: &Contract) -> Contract {
-    Contract {
-        space: RgbSpace::named("srgb").unwrap_or_default(),
-        adaptation: Adaptation::Bradford,
-        ..contract.clone()
-    }
-}
-
-/// Components up to this far outside 0..=1 are due to rounding.
+/// Channels up to this far outside 0..=1 are not said to be outside: materials match the corners of sRGB only
+/// as nearly as this.
 const OUTSIDE: f64 = 1e-3;
 
 impl Swatch {
-    /// Linear sRGB, clipped by component.
-    pub(crate) fn from_linear(rgb: LinearRgb) -> Self {
-        let component = |v: f64| byte(255.0 * srgb_encoded(v.clamp(0.0, 1.0)));
-        let inside = |v: &f64| (-OUTSIDE..=1.0 + OUTSIDE).contains(v);
-        Self { hex: hex(rgb.0.map(component)), clipped: !rgb.0.iter().all(inside) }
+    /// A color of an sRGB screen.
+    pub(crate) fn of(Shown { rgb, beyond }: Shown) -> Self {
+        let hex = hex(rgb.0.map(|v| byte(255.0 * srgb_encoded(v))));
+        Self { hex, is_outside: beyond > OUTSIDE }
     }
 }
 
@@ -132,13 +123,18 @@ impl Swatch {
 mod tests {
     use super::*;
     use upglow::{DyeModel, DyeOptions, DyeSet, Fluorescence};
-    use upglow_color::Contract;
+    use upglow_color::{Contract, LinearRgb, RgbSpace, Screen};
 
     #[test]
     fn screen_colors_have_their_published_values() {
+        let swatch = |rgb| {
+            let srgb = Contract { space: RgbSpace::named("srgb").unwrap(), ..Contract::default() };
+            let srgb = srgb.on(Grid::FIT);
+            Swatch::of(Screen::srgb(srgb.white()).within(srgb.xyz_from_rgb(LinearRgb(rgb))))
+        };
         // Middle gray of 18 % is 118 in sRGB.
-        assert_eq!(Swatch::from_linear(LinearRgb([0.18, 0.0, 1.0])).hex, "#7600ff");
-        assert!(Swatch::from_linear(LinearRgb([1.2, 0.0, 1.0])).clipped);
+        assert_eq!(swatch([0.18, 0.0, 1.0]), Swatch { hex: "#7600ff".into(), is_outside: false });
+        assert!(swatch([1.2, 0.0, 1.0]).is_outside);
     }
 
     #[test]

@@ -209,8 +209,8 @@ fn swatches(figure: &Figure<'_>) -> Vec<String> {
 
 /// The lines below the swatches.
 fn caption(figure: &Figure<'_>) -> Vec<String> {
-    let clipped = figure.target.clipped || figure.result.clipped;
-    let note = clipped.then(|| "outside sRGB, shown clipped".to_owned());
+    let is_outside = figure.target.is_outside || figure.result.is_outside;
+    let note = is_outside.then(|| "outside sRGB, shown duller".to_owned());
     let lines = figure.caption.iter().take(CAPTION_LINES).cloned().chain(note);
     let text = |(row, line): (u8, String)| {
         let y = SWATCH_TOP + SWATCH + 26.0 + CAPTION_STEP * f64::from(row);
@@ -232,7 +232,6 @@ pub(super) fn shortened(line: &str, letters: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use upglow_color::LinearRgb;
 
     fn curves(emission: f64) -> Curves {
         let wavelengths_nm = vec![300.0, 500.0, 780.0, 830.0];
@@ -245,7 +244,7 @@ mod tests {
     }
 
     fn figure<'c>(curves: &'c Curves, caption: &str) -> Figure<'c> {
-        let swatch = Swatch::from_linear(LinearRgb([0.2, 0.5, 0.1]));
+        let swatch = Swatch { hex: "#7cbc59".into(), is_outside: false };
         Figure { curves, target: swatch.clone(), result: swatch, caption: vec![caption.into()] }
     }
 

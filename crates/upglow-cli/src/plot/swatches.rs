@@ -51,7 +51,7 @@ pub(crate) fn draw(chart: &Chart) -> String {
         let y = top + HEIGHT * (count(i) + 0.5) + 4.0;
         elements.push(small(MARGIN, y).around(escape(&shortened(name, NAME_LETTERS))));
     }
-    let mut is_clipped = false;
+    let mut is_outside = false;
     for (k, column) in chart.columns.iter().enumerate() {
         let x = left + WIDTH * count(k);
         for (i, line) in column.head.iter().enumerate() {
@@ -63,18 +63,18 @@ pub(crate) fn draw(chart: &Chart) -> String {
             let area = at("rect", x, y).with("width", WIDTH).with("height", HEIGHT);
             let area = area.with("fill", &swatch.hex).with("shape-rendering", "crispEdges");
             elements.push(area.empty());
-            if swatch.clipped {
+            if swatch.is_outside {
                 elements.push(mark(x + WIDTH, y));
-                is_clipped = true;
+                is_outside = true;
             }
         }
     }
     let width = WIDTH * count(chart.columns.len());
     elements.push(outlined(at("rect", left, top), [width, bottom - top], "#999999"));
     let mut y = bottom + 24.0;
-    if is_clipped {
+    if is_outside {
         elements.push(mark(MARGIN + MARK, y - 10.0));
-        elements.push(small(MARGIN + MARK + 8.0, y).around("clipped: outside sRGB"));
+        elements.push(small(MARGIN + MARK + 8.0, y).around("outside sRGB, shown duller"));
         y += LINE;
     }
     for note in &chart.notes {
@@ -88,7 +88,7 @@ fn small(x: f64, y: f64) -> Element {
     at("text", x, y).with("font-size", SMALL)
 }
 
-/// The mark of a clipped color, whose upper right corner is given; it can be seen on any color.
+/// The mark of a color outside sRGB, whose upper right corner is given; it can be seen on any color.
 fn mark(right: f64, y: f64) -> String {
     let corners = [[right - MARK, y], [right, y], [right, y + MARK]];
     Element::new("polygon")
@@ -106,12 +106,11 @@ fn count(number: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use upglow_color::LinearRgb;
 
-    fn chart(red: f64) -> Chart {
+    fn chart(is_outside: bool) -> Chart {
         let column = |name: &str| Column {
             head: vec![name.into(), "seen from D65".into()],
-            swatches: vec![Swatch::from_linear(LinearRgb([red, 0.5, 0.1]))],
+            swatches: vec![Swatch { hex: "#7cbc59".into(), is_outside }],
         };
         Chart {
             title: "a < b".into(),
@@ -122,20 +121,20 @@ mod tests {
     }
 
     #[test]
-    fn each_color_under_each_light_is_a_swatch_and_clipped_ones_are_marked() {
-        let inside = draw(&chart(0.5));
+    fn each_color_under_each_light_is_a_swatch_and_those_outside_are_marked() {
+        let inside = draw(&chart(false));
         // Paper, frame and two swatches.
         assert_eq!(inside.matches("<rect").count(), 4);
-        assert!(!inside.contains("polygon") && !inside.contains("clipped"));
-        let outside = draw(&chart(1.5));
+        assert!(!inside.contains("polygon") && !inside.contains("outside"));
+        let outside = draw(&chart(true));
         // The third explains the two.
         assert_eq!(outside.matches("<polygon").count(), 3);
-        assert!(outside.contains("clipped: outside sRGB"));
+        assert!(outside.contains("outside sRGB, shown duller"));
     }
 
     #[test]
     fn names_are_escaped_and_shortened_and_the_notes_are_said() {
-        let svg = draw(&chart(0.5));
+        let svg = draw(&chart(false));
         assert!(svg.contains("a &lt; b") && svg.contains("xx…<"), "{svg}");
         assert!(svg.contains("the first 1 of 2 colors") && svg.contains("seen from D65"));
     }

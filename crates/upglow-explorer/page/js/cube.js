@@ -233,6 +233,13 @@ export function relit(sampled, light, uv, below) {
     return xyz;
 }
 
+// What is to say of a material under a light whose power is not known where the material absorbs ultraviolet.
+export function missingUltraviolet(sampled, light) {
+    const missing = light.missing_ultraviolet;
+    const absorbed = missing && sampled.response?.slice(0, 3 * (missing.from_nm - FIRST_NM));
+    return absorbed?.some((seen) => seen > 0) ? `${missing.sentence}.` : "";
+}
+
 // A radiance factor is a ratio without meaning where less of a light's peak than this arrives.
 const LEAST_POWER = 1e-3;
 

@@ -2,7 +2,7 @@
 
 import { SCREEN, SCREEN_NAME, cssColor, de2000, multiply, onScreen } from "./color.js";
 import { set, state } from "./state.js";
-import { relit } from "./cube.js";
+import { missingUltraviolet, relit } from "./cube.js";
 import { element } from "./dom.js";
 
 // A material as it would be if it kept the wavelength of all light: as dark where dyes absorb.
@@ -49,7 +49,8 @@ export function makeRelight(root, app) {
         element("span", { class: "light-missed", title: "from the asked color, after adaptation to the light" }, "ΔE00"));
     const list = element("ul", { class: "lights" });
     const numbers = makeNumbers(parts);
-    root.append(ultraviolet.root, head, list, numbers.root);
+    const missing = element("p", { class: "note light-missing" });
+    root.append(ultraviolet.root, head, list, numbers.root, missing);
 
     let rows = [];
     let made = "";
@@ -80,6 +81,7 @@ export function makeRelight(root, app) {
                 row.draw(colors, missed, row.light.is_adapted ? adapted : 1, row.light === light);
                 if (row.light === light) {
                     numbers.draw(light.name, colors);
+                    missing.textContent = missingUltraviolet(now.sampled, light);
                 }
             });
         },

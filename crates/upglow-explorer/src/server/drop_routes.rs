@@ -139,7 +139,7 @@ async fn light(State(shared): State<Arc<Shared>>, uri: Uri, body: Body) -> Answe
     let text = body::text(body, Limit::TABLE).await?;
     work(move || {
         let light = shared.drops.add_light(&query.name(), &text)?;
-        let shown = ShownLight::new(held.cube.contract(), &light);
+        let shown = ShownLight::new(&held.cube, &light);
         let mut told = shown.description();
         let seen = &shown.seen.colorimetry;
         told["nm"] = json!(seen.wavelengths_nm());

@@ -84,6 +84,19 @@ for (const way of ["served", "offline"]) {
             await close();
         });
 
+        test("a light whose ultraviolet is not known says so where a dye absorbs", async () => {
+            const { page, close } = await openPage(browser, address());
+            for (const value of [[0.9, 0.1, 0.4], [0.5, 0.5, 0.5]]) {
+                for (const { name, missing_ultraviolet: sentence } of colorOf(value, "--light", "A", "--light", "FL2").lights) {
+                    await pick(page, { space: "ACEScg", value, light: name });
+                    const found = await page.evaluate(() => document.querySelector(".light-missing").textContent);
+                    assert.equal(found, sentence === null ? "" : `${sentence}.`, `${value} under ${name}`);
+                    assert.equal(sentence !== null, value[0] === 0.9 && name === "FL2");
+                }
+            }
+            await close();
+        });
+
         test("more ultraviolet never darkens what fluoresces, and leaves a gray alone", async () => {
             const { page, close } = await openPage(browser, address());
             const luminances = async (value) => {
