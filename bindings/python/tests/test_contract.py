@@ -111,6 +111,9 @@ def test_a_light_that_ends_early_needs_ends(tmp_path) -> None:
     for source in ("D65", upglow.Illuminant("D65")):
         with pytest.raises(ValueError, match="ends='zero' with D65, expected samples or a file"):
             upglow.Illuminant(source, ends="zero")
+        with pytest.raises(ValueError, match="name='lamp' with D65, expected samples or a file"):
+            upglow.Illuminant(source, name="lamp")
+        assert upglow.Illuminant(source, name="D65").name == "D65"
     with pytest.raises(ValueError, match='unknown ends "flat", expected zero or hold'):
         upglow.Illuminant((nm, np.ones(81)), ends="flat")
 

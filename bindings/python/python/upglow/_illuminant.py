@@ -45,7 +45,8 @@ class Illuminant(NamedTable):
     Raises
     ------
     ValueError
-        If the name is unknown, the samples are not a valid light, or ``ends`` comes without samples.
+        If the name is unknown, the samples are not a valid light, or ``ends`` or another ``name`` comes
+        without samples.
     OSError
         If the file cannot be read.
 

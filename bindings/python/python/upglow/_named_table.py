@@ -36,7 +36,7 @@ class NamedTable:
             instance("name", name, str, "a text")
         for native in (source, getattr(source, "_native", None)):
             if isinstance(native, cls._kind):
-                return cls._without(rules, native)
+                return cls._without(name, rules, native)
         if isinstance(source, (str, os.PathLike)):
             return cls._named_or_read(os.fspath(source), name, rules)
         kind = cls.__name__
@@ -63,7 +63,7 @@ class NamedTable:
             if not is_path(word):
                 raise
         else:
-            return cls._without(rules, native)
+            return cls._without(name, rules, native)
         path = Path(word)
         text = path.read_text(encoding="utf-8")
         try:
@@ -74,10 +74,14 @@ class NamedTable:
             raise ValueError(f"{path}: {error}") from None
 
     @classmethod
-    def _without(cls, rules: tuple[str, ...], native: Any) -> Any:
-        """A table that is not made of samples, which rules of reading would have no effect on."""
-        if rules:
-            raise ValueError(f"ends={rules[0]!r} with {native.name}, expected samples or a file")
+    def _without(cls, name: str | None, rules: tuple[str, ...], native: Any) -> Any:
+        """A table that has its name and is not made of samples: rules of reading would have no effect."""
+        given = {"ends": rules[0] if rules else None, "name": None if name == native.name else name}
+        for option, value in given.items():
+            if value is not None:
+                raise ValueError(
+                    f"{option}={value!r} with {native.name}, expected samples or a file"
+                )
         return native
 
     @classmethod

@@ -39,7 +39,8 @@ class Observer(NamedTable):
     Raises
     ------
     ValueError
-        If the name is unknown or the samples are not a valid observer.
+        If the name is unknown, the samples are not a valid observer, or another ``name`` comes without
+        samples.
     OSError
         If the file cannot be read.
 
