@@ -227,6 +227,11 @@ impl Illuminant {
         Self { given_nm: [first_nm, last_nm], ..light }
     }
 
+    /// D65 behind a filter that takes all power below 400 nm: daylight without ultraviolet.
+    pub fn daylight_without_ultraviolet() -> Self {
+        Self::d65().filtered("D65 from 400 nm", 400.0)
+    }
+
     /// An ultraviolet lamp as used for minerals and banknotes, under which only fluorescence is visible: a line
     /// at 365 nm, 12 nm wide at half of its height.
     pub fn mineral_lamp() -> Self {

@@ -305,8 +305,7 @@ pub(crate) mod tests {
 
     fn lights() -> Vec<Illuminant> {
         let named = |name| Illuminant::named(name).unwrap();
-        let cut = named("D65").cut_below("D65 from 400 nm", 400.0).unwrap();
-        let lamp = Illuminant::mineral_lamp();
+        let [cut, lamp] = [Illuminant::daylight_without_ultraviolet(), Illuminant::mineral_lamp()];
         vec![named("A"), named("E"), cut, named("FL2"), named("HP5"), lamp]
     }
 

@@ -69,7 +69,7 @@ pub use polish::Polisher;
 pub use preset::Preset;
 pub use progress::{Progress, Unwatched, Watch};
 pub use relight::{Appearance, Relighting, SeenBy, View};
-pub use seams::{Seam, seams, ultraviolet_lamp};
+pub use seams::{Seam, seams};
 pub use standing_table::{Estimate, StandingTable};
 pub use verify::{
     Check, Offender, Stopped, Verdict, VerifyOptions, VerifyReport, random_rgb, verify,

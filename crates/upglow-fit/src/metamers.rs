@@ -12,7 +12,6 @@ mod lit;
 mod posterior;
 mod prior;
 
-use crate::fit_matrix::goal::daylight_without_ultraviolet;
 use crate::own_material::{FilmPart, OwnMaterial, OwnMaterialError, fitted_dye};
 use crate::problem::parabola::edge_of;
 use crate::seams::ultraviolet_lamp;
@@ -190,7 +189,7 @@ impl MetamerSearch {
 fn expected_lights() -> Vec<Illuminant> {
     let named = ["A", "E", "FL2", "FL11", "HP1", "LED-B3"];
     let named = named.map(|name| Illuminant::named(name).expect("it is built in"));
-    let others = [daylight_without_ultraviolet(), ultraviolet_lamp()];
+    let others = [Illuminant::daylight_without_ultraviolet(), ultraviolet_lamp()];
     named.into_iter().chain(others).collect()
 }
 

@@ -48,7 +48,7 @@ pub(crate) fn lights() -> [Illuminant; 3] {
 ///
 /// The line is a Gaussian of power 100 at its peak; D65, which has power 100 at 560 nm, is multiplied by 0.05.
 /// Each has about half of the power.
-pub fn ultraviolet_lamp() -> Illuminant {
+pub(crate) fn ultraviolet_lamp() -> Illuminant {
     let line = Illuminant::line("line", 365.0, 20.0).expect("it is a line");
     let daylight = Illuminant::named("D65").expect("it is built in");
     let power = line.power().values().iter().zip(daylight.power().values());

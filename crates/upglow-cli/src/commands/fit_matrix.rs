@@ -27,7 +27,7 @@ fn lights(args: &FitMatrixArgs) -> Result<Vec<Illuminant>, Failure> {
         return Ok(given);
     }
     let named = |name| Illuminant::named(name).expect("the light is built in");
-    let cut = named("D65").cut_below("D65 from 400 nm", 400.0).expect("it is visible");
+    let cut = Illuminant::daylight_without_ultraviolet();
     let [day, a, e, fl2, hp5] = ["D65", "A", "E", "FL2", "HP5"].map(named);
     Ok(vec![day, a, e, cut, fl2, hp5, Illuminant::mineral_lamp()])
 }

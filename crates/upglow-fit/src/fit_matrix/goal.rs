@@ -11,14 +11,6 @@ pub(super) const ROWS: usize = 3 * LIGHTS;
 
 /// Daylight, incandescent light, equal energy, and daylight without ultraviolet.
 const WHOLE: usize = 4;
-/// Below this wavelength, nm, the last has no power.
-const CUT_NM: f64 = 400.0;
-
-/// D65 behind a filter that takes the ultraviolet.
-pub(crate) fn daylight_without_ultraviolet() -> Illuminant {
-    let daylight = Illuminant::named("D65").expect("it is built in");
-    daylight.cut_below("D65 without ultraviolet", CUT_NM).expect("it is visible")
-}
 
 /// Lamps from 330 to 420 nm; each has as much power as daylight, to which the observer is adapted.
 const LAMPS: usize = 7;
@@ -79,7 +71,8 @@ impl MatrixGoal {
         let day = MatrixSums::new(measured, &contract.illuminant, &contract.observer)?;
         let by_xyz = day.difference_by_xyz(day.color(measured));
         let named = |name| Illuminant::named(name).expect("it is built in");
-        let whole = [named("D65"), named("A"), named("E"), daylight_without_ultraviolet()];
+        let cut = Illuminant::daylight_without_ultraviolet();
+        let whole = [named("D65"), named("A"), named("E"), cut];
         let mut lights = Vec::with_capacity(LIGHTS);
         for light in whole {
             let sums = MatrixSums::new(measured, &light, &contract.observer)?;

@@ -31,7 +31,10 @@ fn named(name: &str) -> Illuminant {
 /// Six lights that materials are compared under.
 fn six_lights() -> Vec<Illuminant> {
     let named = ["A", "E", "FL2", "HP5"].map(named);
-    named.into_iter().chain([daylight_without_ultraviolet(), ultraviolet_lamp()]).collect()
+    named
+        .into_iter()
+        .chain([Illuminant::daylight_without_ultraviolet(), ultraviolet_lamp()])
+        .collect()
 }
 
 /// The mean ΔE00 of single materials and of blends from the measured ones, which they are made of by their colors
@@ -67,7 +70,7 @@ fn fluorescent_materials_are_known_by_one_color_and_better_by_more() {
     let Some(measured) = measured(test) else { return };
     for (others, goal) in [
         (vec![], BY_ONE),
-        (vec![daylight_without_ultraviolet()], BY_A_PHOTO_WITHOUT_ULTRAVIOLET),
+        (vec![Illuminant::daylight_without_ultraviolet()], BY_A_PHOTO_WITHOUT_ULTRAVIOLET),
         (vec![ultraviolet_lamp(), named("A")], BY_A_LAMP_AND_A),
     ] {
         let found = errors(&measured, &others);

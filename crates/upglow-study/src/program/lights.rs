@@ -4,9 +4,6 @@ use std::ops::Range;
 
 use upglow_color::Illuminant;
 
-/// Below this wavelength, nm, daylight without ultraviolet has no power: that of D65 behind a filter.
-const CUT_NM: f64 = 400.0;
-
 /// Which of [`lights`] are neither D65 nor a part of it.
 pub(crate) const SEVEN: Range<usize> = 1..8;
 
@@ -15,21 +12,17 @@ pub(crate) const SEVEN: Range<usize> = 1..8;
 /// alone.
 pub(crate) fn lights() -> Vec<Illuminant> {
     let mut lights = ["D65", "A", "E", "FL2", "FL11", "HP5", "LED-B3", "ID65"].map(named).to_vec();
-    lights.extend([daylight_without_ultraviolet(), Illuminant::mineral_lamp()]);
+    lights.extend([Illuminant::daylight_without_ultraviolet(), Illuminant::mineral_lamp()]);
     lights
 }
 
 /// Daylight, incandescent light, equal energy, and daylight without ultraviolet.
 pub(crate) fn smooth_lights() -> Vec<Illuminant> {
     let mut lights = ["D65", "A", "E"].map(named).to_vec();
-    lights.push(daylight_without_ultraviolet());
+    lights.push(Illuminant::daylight_without_ultraviolet());
     lights
 }
 
 fn named(name: &str) -> Illuminant {
     Illuminant::named(name).expect("the light is built in")
-}
-
-fn daylight_without_ultraviolet() -> Illuminant {
-    named("D65").cut_below("D65 from 400 nm", CUT_NM).expect("it is visible")
 }

@@ -53,13 +53,14 @@ struct LightReport {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 struct Mean {
     de2000: f64,
-    standard_error: f64,
+    /// `None` for one sample.
+    standard_error: Option<f64>,
 }
 
 impl Mean {
     fn of(values: Vec<f64>) -> Self {
-        let Spread { mean, standard_error, .. } = Spread::of(values);
-        Self { de2000: mean, standard_error }
+        let Spread { count, mean, standard_error, .. } = Spread::of(values);
+        Self { de2000: mean, standard_error: (count > 1).then_some(standard_error) }
     }
 }
 
@@ -139,7 +140,10 @@ impl SetReport {
                 true => format!("({:.2})", mean.de2000),
                 false => format!("{:.2}", mean.de2000),
             };
-            let total = |mean: &Mean| format!("{:.2} ± {:.2}", mean.de2000, mean.standard_error);
+            let total = |Mean { de2000, standard_error }: &Mean| match standard_error {
+                Some(error) => format!("{de2000:.2} ± {error:.2}"),
+                None => format!("{de2000:.2}"),
+            };
             let cells = lights.iter().map(light).chain([mean_of_seven, mean].map(total));
             let cells = cells.collect::<Vec<_>>().join(" | ");
             writeln!(text, "| {way} | {dyed} | {cells} |").expect(IN_MEMORY);
