@@ -14,6 +14,7 @@ use std::path::PathBuf;
 use clap::{Parser, Subcommand};
 use upglow::{CoefficientTable, Interpolation};
 use upglow_color::{Ends, RgbSpace, choices};
+use upglow_fit::PaintKind;
 use upglow_shader::Language;
 use upglow_terminal::{Console, Threads, count, in_range, word};
 
@@ -82,6 +83,30 @@ pub(crate) enum Command {
     Reproduce(MovedArgs),
 }
 
+/// What is known of the paint that has a color.
+#[derive(Clone, Debug, clap::Args)]
+pub(crate) struct PaintArgs {
+    /// Choose by what paints are like, among all built-in dyes with yields of their own: any, which fluoresces
+    /// if its color is unlikely otherwise; ordinary, which does not; fluorescent, which does
+    /// [default with --known: any]
+    #[arg(long, value_name = "NAME", value_parser = word::<PaintKind>(), conflicts_with = "direct")]
+    pub(crate) kind: Option<PaintKind>,
+    /// With --kind or --known: single, the material from which those that may have the color differ least;
+    /// mixture, a blend of up to four that comes near to the mean of all [default: single]
+    #[arg(long, value_name = "NAME", value_parser = word::<AnswerName>())]
+    pub(crate) answer: Option<AnswerName>,
+}
+
+/// One material or a blend.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum AnswerName {
+    #[default]
+    Single,
+    Mixture,
+}
+
+choices!(AnswerName, "answer", Single = "single", Mixture = "mixture");
+
 /// How lights are read from files.
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct LightArgs {
@@ -139,7 +164,7 @@ pub(crate) struct VerifyArgs {
 pub(crate) struct ColorArgs {
     /// Cube made by `upglow build`
     pub(crate) file: PathBuf,
-    /// Linear red in the RGB space of the cube, 0 to 1; up to 10 with --direct
+    /// Linear red in the RGB space of the cube, 0 to 1; up to 10 with --direct, --kind or --known
     #[arg(value_name = "R", allow_hyphen_values = true)]
     pub(crate) red: String,
     /// Linear green, like red
@@ -156,6 +181,22 @@ pub(crate) struct ColorArgs {
     /// Fit a material to this color, with the options of the cube, instead of looking it up
     #[arg(long)]
     pub(crate) direct: bool,
+    #[command(flatten)]
+    pub(crate) paint: PaintArgs,
+    /// A light under which the color is known too, and the color: linear RGB as this command shows it under
+    /// the light. The material that has both is chosen, or for two lights that has all three
+    #[arg(
+        long,
+        num_args = 4,
+        value_names = ["LIGHT", "R", "G", "B"],
+        allow_hyphen_values = true,
+        conflicts_with_all = ["direct", "interpolation"]
+    )]
+    pub(crate) known: Vec<String>,
+    /// With --kind or --known: write the single best material as a cube of 2³ nodes that are all the same, which
+    /// every command that reads cubes can use
+    #[arg(long, short, value_name = "FILE.safetensors")]
+    pub(crate) output: Option<PathBuf>,
     #[arg(
         long = "light",
         value_name = "NAME|FILE",

@@ -8,6 +8,7 @@ mod batch;
 mod color_list;
 mod commands;
 mod files;
+mod metamers;
 mod name_pattern;
 mod output;
 mod pictures;

@@ -61,12 +61,13 @@ fn csv_and_json_agree_for_every_light_and_observer() {
     let folder = folder_with_cube();
     folder.write("list.csv", "name,r,g,b\nvest,0.9,1,0\n,1,1,1\n\"x\",0,0,0\n");
     folder.write("lamp.csv", curves("power", |nm| nm.to_string()));
-    let options = "--light D65 --light lamp.csv --observer cie-1931-2deg --observer cie-1964-10deg";
+    let options =
+        "--light D65 --light lamp.csv --observer cie-1931-2deg --observer cie-1964-10deg --band";
     let told = folder.json(&format!("relight cube --colors list.csv {options} --csv table.csv"));
     let table = String::from_utf8(folder.read("table.csv")).unwrap();
     let mut lines = table.lines().map(|line| line.split(',').collect::<Vec<_>>());
     let header = lines.next().unwrap();
-    assert_eq!(header.len(), 20);
+    assert_eq!(header.len(), 21);
     for view in views(&told) {
         for (color, seen) in
             told["colors"].as_array().unwrap().iter().zip(view["colors"].as_array().unwrap())
@@ -93,6 +94,7 @@ fn csv_and_json_agree_for_every_light_and_observer() {
                 ("fluorescent_share", &seen["fluorescent_share"]),
                 ("whiteness", &seen["whiteness"]["whiteness"]),
                 ("tint", &seen["whiteness"]["tint"]),
+                ("band_de2000", &seen["band_de2000"]),
             ];
             for (name, value) in numbers {
                 let (cell, told): (Option<f64>, _) = (cell(name).parse().ok(), value.as_f64());

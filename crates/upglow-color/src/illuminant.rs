@@ -47,6 +47,14 @@ pub enum IlluminantError {
         /// Least and greatest temperature, K.
         range_k: [f64; 2],
     },
+    /// No such filter for ultraviolet is built in.
+    #[error("{name:?}, expected a wavelength of {} to {} nm behind -cut, as in D65-cut400", range_nm[0], range_nm[1])]
+    Cut {
+        /// The name given.
+        name: String,
+        /// Least and greatest wavelength, nm.
+        range_nm: [u32; 2],
+    },
     /// The CSV text is not a spectrum.
     #[error(transparent)]
     Csv(#[from] SpectrumCsvError),
@@ -225,11 +233,6 @@ impl Illuminant {
         let is_known = from_nm > f64::from(first_nm);
         let first_nm = if is_known { Grid::FINE.first_nm() } else { first_nm };
         Self { given_nm: [first_nm, last_nm], ..light }
-    }
-
-    /// D65 behind a filter that takes all power below 400 nm: daylight without ultraviolet.
-    pub fn daylight_without_ultraviolet() -> Self {
-        Self::d65().filtered("D65 from 400 nm", 400.0)
     }
 
     /// An ultraviolet lamp as used for minerals and banknotes, under which only fluorescence is visible: a line

@@ -117,6 +117,27 @@ fn measurement_conditions_are_lights() {
 }
 
 #[test]
+fn a_light_may_be_behind_a_filter_for_ultraviolet() {
+    let named = |name: &str| Illuminant::named(name).unwrap();
+    for (name, light, nm) in [
+        ("D65-cut400", "D65", 400.0),
+        ("led-v1-CUT420", "LED-V1", 420.0),
+        ("3000k-cut500", "3000K", 500.0),
+    ] {
+        let filtered = named(name);
+        assert_eq!(filtered.power(), named(light).cut_below("filtered", nm).unwrap().power());
+        assert_eq!(named(filtered.name()), filtered);
+    }
+    assert_eq!(named("d65-CUT0400").name(), "D65-cut400");
+    let refused = |name| Illuminant::named(name).unwrap_err().to_string();
+    for name in ["D65-cut300", "D65-cut501", "D65-cut", "D65-cut400.5", "D65-cut-400"] {
+        let expected = "expected a wavelength of 320 to 500 nm behind -cut, as in D65-cut400";
+        assert_eq!(refused(name), format!("{name:?}, {expected}"));
+    }
+    assert!(refused("D66-cut400").starts_with("unknown illuminant"));
+}
+
+#[test]
 fn temperatures_out_of_range_are_refused_in_one_line() {
     let message = |name: &str| Illuminant::named(name).unwrap_err().to_string();
     assert_eq!(message("500K"), "\"500K\" is a blackbody of 500 K, expected 1000 to 100000 K");

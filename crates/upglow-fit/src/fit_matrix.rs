@@ -305,7 +305,8 @@ pub(crate) mod tests {
 
     fn lights() -> Vec<Illuminant> {
         let named = |name| Illuminant::named(name).unwrap();
-        let [cut, lamp] = [Illuminant::daylight_without_ultraviolet(), Illuminant::mineral_lamp()];
+        let cut = named("D65-cut400");
+        let lamp = Illuminant::mineral_lamp();
         vec![named("A"), named("E"), cut, named("FL2"), named("HP5"), lamp]
     }
 

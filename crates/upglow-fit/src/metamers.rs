@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use upglow::{Accounting, DyeSet, FilmModel, Model, QuantumYield};
 use upglow_color::{
-    Contract, ContractError, Illuminant, MeasuredDye, Xyz, ciede2000, difference_by_xyz,
+    Contract, ContractError, Illuminant, MeasuredDye, Observer, Xyz, ciede2000, difference_by_xyz,
     lab_from_xyz,
 };
 
@@ -38,7 +38,7 @@ use prior::{Dyes, SLOPE_MAX_PER_NM, densities};
 /// let search = MetamerSearch::new(&contract, &[], PaintKind::Fluorescent)?;
 /// let orange = contract.on(upglow_color::Grid::FIT).xyz_from_rgb(LinearRgb([0.9, 0.3, 0.02]));
 /// let metamers = search.of(&[orange])?;
-/// let a = search.light(&Illuminant::named("A")?)?;
+/// let a = search.light(&Illuminant::named("A")?);
 /// println!("within {:.1} ΔE00 of {:?} under A", metamers.band(&a, metamers.mean(&a), 0.9), metamers.mean(&a));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -140,12 +140,14 @@ impl MetamerSearch {
     }
 
     /// A light to see metamers under.
-    ///
-    /// # Errors
-    ///
-    /// [`ContractError`] if the observer does not see it.
-    pub fn light(&self, light: &Illuminant) -> Result<MetamerLight, ContractError> {
-        Ok(MetamerLight::new(&self.model, &self.contract, light))
+    pub fn light(&self, light: &Illuminant) -> MetamerLight {
+        MetamerLight::new(&self.model, &self.contract, light)
+    }
+
+    /// A light to see metamers under, for another observer.
+    pub(crate) fn light_for(&self, observer: &Observer, light: &Illuminant) -> MetamerLight {
+        let contract = Contract { observer: observer.clone(), ..self.contract.clone() };
+        MetamerLight::new(&self.model, &contract, light)
     }
 
     /// The materials that may have these colors, one for each light of the search: relative to white as
@@ -187,10 +189,9 @@ impl MetamerSearch {
 
 /// Lights that people have, at which a material is likely to be looked at.
 fn expected_lights() -> Vec<Illuminant> {
-    let named = ["A", "E", "FL2", "FL11", "HP1", "LED-B3"];
+    let named = ["A", "E", "D65-cut400", "FL2", "FL11", "HP1", "LED-B3"];
     let named = named.map(|name| Illuminant::named(name).expect("it is built in"));
-    let others = [Illuminant::daylight_without_ultraviolet(), ultraviolet_lamp()];
-    named.into_iter().chain(others).collect()
+    named.into_iter().chain([ultraviolet_lamp()]).collect()
 }
 
 /// The materials that may have a color, with their probabilities.
@@ -204,6 +205,9 @@ pub struct Metamers<'s> {
 }
 
 impl Metamers<'_> {
+    /// The share that a band usually holds: nine of ten.
+    pub const USUAL_SHARE: f64 = 0.9;
+
     /// The probability that the paint fluoresces.
     pub fn fluorescent_probability(&self) -> f64 {
         let emitting = self.found.iter().filter(|found| found.does == Dyes::Emit);

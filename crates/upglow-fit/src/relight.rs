@@ -1,11 +1,14 @@
 //! How the materials of many colors look under lights, to observers.
 
 use rayon::prelude::*;
-use upglow::{Cube, LookupError, Material, Mixture, ModelOnGrid};
+use upglow::{Cube, LookupError, Material, Mixture, Model, ModelOnGrid};
 use upglow_color::{
     Colorimetry, Contract, ContractError, Grid, Illuminant, Lab, LinearRgb, MissingUltraviolet,
     Observer, SeenUnder, Whiteness, WhitenessScale, Xyz, ciede2000,
 };
+
+use crate::metamers::{MetamerSearch, Metamers};
+use crate::own_material::OwnMaterial;
 
 /// Materials of colors, to be seen under lights.
 ///
@@ -14,11 +17,25 @@ use upglow_color::{
 #[must_use]
 #[derive(Clone, Debug)]
 pub struct Relighting<'c> {
-    cube: &'c Cube,
-    /// Those that take part in a color.
-    materials: Vec<Material>,
-    /// For each color four of the materials and their weights.
-    blends: Vec<[(usize, f64); 4]>,
+    contract: &'c Contract,
+    source: Source<'c>,
+    /// For each color all materials that may have it, and the search that found them.
+    metamers: Option<(&'c MetamerSearch, Vec<Metamers<'c>>)>,
+}
+
+/// Where the materials come from.
+#[derive(Clone, Debug)]
+enum Source<'c> {
+    /// Blends of materials of one model.
+    Cube {
+        model: &'c Model,
+        /// Those that take part in a color.
+        materials: Vec<Material>,
+        /// For each color four of the materials and their weights.
+        blends: Vec<[(usize, f64); 4]>,
+    },
+    /// Materials with models of their own.
+    Own(Vec<OwnMaterial>),
 }
 
 /// What takes no part in a blend.
@@ -46,7 +63,7 @@ impl<'c> Relighting<'c> {
                 *corner = (place, weight);
             }
         }
-        Ok(Self { cube, materials, blends })
+        Ok(Self::of_blends(cube, materials, blends))
     }
 
     /// The nodes of the cube.
@@ -58,7 +75,23 @@ impl<'c> Relighting<'c> {
     pub fn of_materials(cube: &'c Cube, materials: Vec<Material>) -> Self {
         let alone = |place| [(place, 1.0), NOTHING, NOTHING, NOTHING];
         let blends = (0..materials.len()).map(alone).collect();
-        Self { cube, materials, blends }
+        Self::of_blends(cube, materials, blends)
+    }
+
+    /// Materials with models of their own, that have their colors under the light of `contract`.
+    pub fn of_own_materials(contract: &'c Contract, materials: Vec<OwnMaterial>) -> Self {
+        Self { contract, source: Source::Own(materials), metamers: None }
+    }
+
+    fn of_blends(cube: &'c Cube, materials: Vec<Material>, blends: Vec<[(usize, f64); 4]>) -> Self {
+        let source = Source::Cube { model: cube.model(), materials, blends };
+        Self { contract: cube.contract(), source, metamers: None }
+    }
+
+    /// The same with a band for each color: how far others are of all materials that may have it, which `search`
+    /// found, in the order of the colors.
+    pub fn with_metamers(self, search: &'c MetamerSearch, metamers: Vec<Metamers<'c>>) -> Self {
+        Self { metamers: Some((search, metamers)), ..self }
     }
 
     /// A blend that the cube returned.
@@ -69,24 +102,29 @@ impl<'c> Relighting<'c> {
             blend[place] = (place, weight);
             materials.push(material);
         }
-        Self { cube, materials, blends: vec![blend] }
+        Self::of_blends(cube, materials, vec![blend])
     }
 
     /// What is to say about these materials under a light: ultraviolet that is not known, where a dye in one of
     /// them absorbs.
     pub fn missing_ultraviolet(&self, light: &Illuminant) -> Option<MissingUltraviolet> {
         light.missing_ultraviolet()?;
-        let mut mixtures = self.materials.iter().map(|&m| Mixture::of(self.cube.model(), m));
-        mixtures.find_map(|mixture| mixture.missing_ultraviolet(light))
+        match &self.source {
+            Source::Cube { model, materials, .. } => {
+                let mut mixtures = materials.iter().map(|&m| Mixture::of(model, m));
+                mixtures.find_map(|mixture| mixture.missing_ultraviolet(light))
+            }
+            Source::Own(own) => own.iter().find_map(|m| m.mixture().missing_ultraviolet(light)),
+        }
     }
 
     /// An observer of these materials.
     ///
     /// # Errors
     ///
-    /// [`ContractError`] if the observer does not see the light of the cube.
+    /// [`ContractError`] if the observer does not see the light of the contract.
     pub fn seen_by(&self, observer: &Observer) -> Result<SeenBy<'_>, ContractError> {
-        let contract = Contract { observer: observer.clone(), ..self.cube.contract().clone() };
+        let contract = Contract { observer: observer.clone(), ..self.contract.clone() };
         contract.check()?;
         let own = contract.on(Grid::FIT);
         let colors = self.colors(&own);
@@ -96,8 +134,18 @@ impl<'c> Relighting<'c> {
 
     /// The colors, and what of them fluorescence emits.
     fn colors(&self, colorimetry: &Colorimetry) -> Vec<(Xyz, Xyz)> {
-        let sums = ModelOnGrid::new(self.cube.model(), colorimetry);
-        let each = self.materials.par_iter().map(|&material| sums.color_and_emission(material));
+        let (model, materials, blends) = match &self.source {
+            Source::Cube { model, materials, blends } => (model, materials, blends),
+            Source::Own(own) => {
+                let color = |material: &OwnMaterial| {
+                    let sums = ModelOnGrid::new(material.model(), colorimetry);
+                    material.mixture().color_and_emission(&sums)
+                };
+                return own.par_iter().map(color).collect();
+            }
+        };
+        let sums = ModelOnGrid::new(model, colorimetry);
+        let each = materials.par_iter().map(|&material| sums.color_and_emission(material));
         let each: Vec<(Xyz, Xyz)> = each.collect();
         let blend = |parts: &[(usize, f64); 4]| {
             let parts = || parts.iter().filter(|(_, weight)| *weight > 0.0);
@@ -105,7 +153,7 @@ impl<'c> Relighting<'c> {
             let emitted: Xyz = parts().map(|&(place, weight)| each[place].1 * weight).sum();
             (color, emitted)
         };
-        self.blends.par_iter().map(blend).collect()
+        blends.par_iter().map(blend).collect()
     }
 }
 
@@ -137,10 +185,19 @@ impl SeenBy<'_> {
                 de2000: seen.is_adapted.then(|| ciede2000(*own, adapted())),
                 fluorescent_share: (xyz.0[1] > 0.0).then(|| emitted.0[1] / xyz.0[1]),
                 whiteness: scale.and_then(|scale| scale.of(xyz)),
+                band_de2000: None,
             }
         };
         let colors = self.relighting.colors(&seen.colorimetry);
-        let appearances = colors.into_par_iter().zip(&self.labs).map(appearance).collect();
+        let appearances = colors.into_par_iter().zip(&self.labs).map(appearance);
+        let mut appearances: Vec<Appearance> = appearances.collect();
+        if let Some((search, metamers)) = &self.relighting.metamers {
+            let light = search.light_for(&self.contract.observer, light);
+            appearances.par_iter_mut().zip(metamers).for_each(|(appearance, metamers)| {
+                let band = metamers.band(&light, appearance.xyz, Metamers::USUAL_SHARE);
+                appearance.band_de2000 = Some(band);
+            });
+        }
         View { seen, appearances }
     }
 }
@@ -172,6 +229,9 @@ pub struct Appearance {
     pub fluorescent_share: Option<f64>,
     /// Whiteness and tint, where they are defined.
     pub whiteness: Option<Whiteness>,
+    /// How far the material may be off: the ΔE00 from this color within which nine of ten materials are that may
+    /// have the color under the light of the cube, by their probabilities; where these were searched.
+    pub band_de2000: Option<f64>,
 }
 
 #[cfg(test)]

@@ -37,7 +37,7 @@ pub(crate) struct FitMatrixArgs {
         value_name = "NAME|FILE",
         help = format!(
             "Compare the colors under this light: {}; several may be given \
-             [default: D65, A, E, D65 without ultraviolet, FL2, HP5 and a 365 nm lamp]",
+             [default: D65, A, E, D65-cut400, FL2, HP5 and a 365 nm lamp]",
             lights()
         )
     )]

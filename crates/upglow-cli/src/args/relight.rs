@@ -4,14 +4,14 @@ use std::path::PathBuf;
 
 use upglow_terminal::Threads;
 
-use super::LightArgs;
 use super::values::{lights, observers};
+use super::{LightArgs, PaintArgs};
 
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct RelightArgs {
     /// Cube made by `upglow build`
     pub(crate) file: PathBuf,
-    /// Linear red in the RGB space of the cube, 0 to 1; up to 10 with --direct
+    /// Linear red in the RGB space of the cube, 0 to 1; up to 10 with --direct or --kind
     #[arg(value_name = "R", allow_hyphen_values = true, requires = "blue")]
     pub(crate) red: Option<String>,
     /// Linear green, like red
@@ -24,11 +24,17 @@ pub(crate) struct RelightArgs {
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["red", "nodes"])]
     pub(crate) colors: Option<PathBuf>,
     /// Relight all nodes of the cube
-    #[arg(long, conflicts_with_all = ["red", "direct"])]
+    #[arg(long, conflicts_with_all = ["red", "direct", "kind"])]
     pub(crate) nodes: bool,
     /// Fit a material to each color, with the options of the cube, instead of looking it up
     #[arg(long)]
     pub(crate) direct: bool,
+    #[command(flatten)]
+    pub(crate) paint: PaintArgs,
+    /// Also show how far each answer may be off: the ΔE00 within which nine of ten materials are that may have
+    /// the color. At most 1000 colors; each takes half a second
+    #[arg(long, conflicts_with = "nodes")]
+    pub(crate) band: bool,
     #[arg(
         long = "light",
         value_name = "NAME|FILE",

@@ -2,27 +2,45 @@
 
 use std::path::Path;
 
-use upglow::{Cube, Interpolation, Mixture, ModelOnGrid};
+use upglow::{Cube, FitRecord, Interpolation, Mixture, ModelOnGrid};
 use upglow_color::{
     ColorSolids, Colorimetry, Contract, Grid, Illuminant, LinearRgb, Metric, Screen, Xyz,
 };
-use upglow_fit::{FitOptions, Fitter, MaterialKind, Relighting, View};
+use upglow_fit::{
+    FitOptions, Fitter, MaterialKind, MetamerSearch, Metamers, OwnMaterial, PaintKind, Relighting,
+    View,
+};
 use upglow_terminal::{Console, Failure};
 
 use super::color_report::{ColorReport, LightReport, PartReport};
-use crate::args::ColorArgs;
+use crate::args::{AnswerName, ColorArgs};
+use crate::metamers::{self, KnownColor, PaintReport, known_colors};
 use crate::output::warn_of_ultraviolet;
 use crate::plot::{Curves, Figure, Swatch, svg};
 use crate::{files, plan};
 
 pub(crate) fn run(args: &ColorArgs, console: &Console) -> Result<(), Failure> {
-    let rgb = plan::color([&args.red, &args.green, &args.blue], args.direct)?;
+    let is_search = args.paint.kind.is_some() || !args.known.is_empty();
+    args.paint.check_answer(is_search, "--kind or --known")?;
+    if args.output.is_some() && !is_search {
+        let message = "given without --kind or --known; a cube is the output of upglow build";
+        return Err(Failure::option("--output", message));
+    }
+    let rgb = plan::color([&args.red, &args.green, &args.blue], args.direct || is_search)?;
+    if let Some(output) = &args.output {
+        files::check_ending(output, files::CUBE)?;
+        files::check_output_of(output, Some(&args.file), &files::really(&[]))?;
+    }
     if let Some(plot) = &args.plot {
         files::check_ending(plot, files::SVG)?;
         files::check_output_of(plot, Some(&args.file), &files::really(&[]))?;
     }
     let lights = plan::lights_to_see(&args.lights, &args.light)?;
+    let known = known_colors(&args.known, &args.light)?;
     let cube = files::read_cube(&args.file)?;
+    if is_search {
+        return run_search(args, &cube, rgb, &known, lights, console);
+    }
     let interpolation = (!args.direct).then(|| args.interpolation.unwrap_or_default());
     let mixture = match interpolation {
         Some(interpolation) => cube.lookup(rgb, interpolation).map_err(no_material)?,
@@ -31,11 +49,55 @@ pub(crate) fn run(args: &ColorArgs, console: &Console) -> Result<(), Failure> {
             Mixture::of(cube.model(), fit.material())
         }
     };
-    let shown = Shown::new(&cube, &mixture, rgb, interpolation, lights);
-    if let Some(path) = &args.plot {
-        files::write(path, svg::draw(&shown.figure()).as_bytes())?;
+    let origin = interpolation.map_or(Origin::Fitted, Origin::LookedUp);
+    Shown::new(&cube, &mixture, rgb, origin, lights).finish(args, console)
+}
+
+/// The material of a paint that has the colors.
+fn run_search(
+    args: &ColorArgs,
+    cube: &Cube,
+    rgb: LinearRgb,
+    known: &[KnownColor],
+    lights: Vec<Illuminant>,
+    console: &Console,
+) -> Result<(), Failure> {
+    let contract = cube.contract();
+    let kind = args.paint.kind.unwrap_or_default();
+    let colors = metamers::colors(contract, rgb, known);
+    let search = metamers::search(contract, known, kind)?;
+    let found = search.of(&colors).map_err(metamers::refused)?;
+    let probability = match kind {
+        PaintKind::Any => found.fluorescent_probability(),
+        _ => {
+            let any = metamers::search(contract, known, PaintKind::Any)?;
+            any.of(&colors).map_err(metamers::refused)?.fluorescent_probability()
+        }
+    };
+    let material = metamers::answer(&found, &args.paint)?;
+    let mixture = material.mixture();
+    if let Some(path) = &args.output {
+        let single = match args.paint.answer {
+            Some(AnswerName::Mixture) => &found.single().map_err(metamers::refused)?,
+            _ => &material,
+        };
+        let cube = single.to_cube(contract, METHOD).map_err(no_material)?;
+        cube.write(path).map_err(|error| Failure::file(path, error))?;
     }
-    console.print(&shown.report(args))
+    let seen = |under: &Colorimetry| mixture.color(&ModelOnGrid::new(mixture.model(), under));
+    let report = PaintReport::new(contract, &args.paint, probability, known, seen);
+    let origin = Origin::Searched(Box::new(report), &material, &search, &found);
+    Shown::new(cube, &mixture, rgb, origin, lights).finish(args, console)
+}
+
+/// What the record of a cube calls the way in which its material was found.
+const METHOD: &str = "metamers";
+
+/// Where a material comes from.
+enum Origin<'a> {
+    LookedUp(Interpolation),
+    Fitted,
+    Searched(Box<PaintReport>, &'a OwnMaterial, &'a MetamerSearch, &'a Metamers<'a>),
 }
 
 fn no_material(error: impl std::error::Error + Send + Sync + 'static) -> Failure {
@@ -53,8 +115,7 @@ struct Shown<'a> {
     cube: &'a Cube,
     mixture: &'a Mixture<'a>,
     rgb: LinearRgb,
-    /// `None` for a material that was fitted to this color.
-    interpolation: Option<Interpolation>,
+    origin: Origin<'a>,
     lights: Vec<Illuminant>,
     colorimetry: Colorimetry,
     target: Xyz,
@@ -67,21 +128,29 @@ impl<'a> Shown<'a> {
         cube: &'a Cube,
         mixture: &'a Mixture<'a>,
         rgb: LinearRgb,
-        interpolation: Option<Interpolation>,
+        origin: Origin<'a>,
         lights: Vec<Illuminant>,
     ) -> Self {
         let colorimetry = cube.contract().on(Grid::FIT);
         let target = colorimetry.xyz_from_rgb(rgb);
-        let color = mixture.color(&ModelOnGrid::new(cube.model(), &colorimetry));
+        let color = mixture.color(&ModelOnGrid::new(mixture.model(), &colorimetry));
         let curves = Curves::of(mixture, &colorimetry);
-        Self { cube, mixture, rgb, interpolation, lights, target, color, curves, colorimetry }
+        Self { cube, mixture, rgb, origin, lights, target, color, curves, colorimetry }
+    }
+
+    /// Draws it if asked to, and prints the report.
+    fn finish(&self, args: &ColorArgs, console: &Console) -> Result<(), Failure> {
+        if let Some(path) = &args.plot {
+            files::write(path, svg::draw(&self.figure()).as_bytes())?;
+        }
+        console.print(&self.report(args))
     }
 
     fn de2000(&self, color: Xyz) -> f64 {
         Metric::De2000.distance(&self.colorimetry, self.target, color)
     }
 
-    fn report(&'a self, args: &ColorArgs) -> ColorReport<'a> {
+    fn report(&self, args: &ColorArgs) -> ColorReport<'_> {
         let Contract { space, illuminant, adaptation, .. } = self.cube.contract();
         let standing = ColorSolids::new(&self.colorimetry).standing(self.target);
         ColorReport {
@@ -89,7 +158,15 @@ impl<'a> Shown<'a> {
             rgb_space: space.name(),
             rgb: self.rgb,
             xyz: self.target,
-            interpolation: self.interpolation,
+            interpolation: match self.origin {
+                Origin::LookedUp(interpolation) => Some(interpolation),
+                _ => None,
+            },
+            paint: match &self.origin {
+                Origin::Searched(paint, ..) => Some(paint),
+                _ => None,
+            },
+            output: args.output.as_ref().map(|path| path.display().to_string()),
             de2000: self.de2000(self.color),
             kind: self.kind(),
             standing: standing.into(),
@@ -104,17 +181,28 @@ impl<'a> Shown<'a> {
     }
 
     fn kind(&self) -> MaterialKind {
-        MaterialKind::of_mixture(self.mixture, self.de2000(self.color), self.cube.fit())
+        let de2000 = self.de2000(self.color);
+        let is_searched = matches!(self.origin, Origin::Searched(..));
+        // A material of its own has no limits of the cube.
+        let record = if is_searched { &FitRecord::default() } else { self.cube.fit() };
+        MaterialKind::of_mixture(self.mixture, de2000, record)
     }
 
     fn parts(&self) -> Vec<PartReport<'_>> {
-        self.mixture.parts().map(|part| PartReport::new(part, self.cube.model())).collect()
+        self.mixture.parts().map(|part| PartReport::new(part, self.mixture.model())).collect()
     }
 
     /// How the material looks under the cube's own light and the others.
     fn lights(&self) -> Vec<LightReport> {
         let Contract { illuminant: own, observer, .. } = self.cube.contract();
-        let relighting = Relighting::of_mixture(self.cube, self.mixture);
+        let relighting = match &self.origin {
+            Origin::Searched(_, material, search, metamers) => {
+                let own = vec![OwnMaterial::clone(material)];
+                Relighting::of_own_materials(self.cube.contract(), own)
+                    .with_metamers(search, vec![Metamers::clone(metamers)])
+            }
+            _ => Relighting::of_mixture(self.cube, self.mixture),
+        };
         let seen_by = relighting.seen_by(observer).expect("its observer sees its light");
         let others = self.lights.iter().filter(|light| light.name() != own.name());
         let under = |light: &Illuminant| {
@@ -139,11 +227,15 @@ impl<'a> Shown<'a> {
     fn caption(&self) -> Vec<String> {
         let contract = self.cube.contract();
         let LinearRgb([r, g, b]) = self.rgb;
-        let origin = self.interpolation.map(|interpolation| format!("looked up, {interpolation}"));
+        let origin = match &self.origin {
+            Origin::LookedUp(interpolation) => format!("looked up, {interpolation}"),
+            Origin::Fitted => "fitted directly".into(),
+            Origin::Searched(paint, ..) => format!("{} paint, {}", paint.kind, paint.answer),
+        };
         let mut lines = vec![
             format!("{} ({r}, {g}, {b})", contract.space.name()),
             format!("under {}, {}", contract.illuminant.name(), contract.observer.name()),
-            origin.unwrap_or("fitted directly".into()),
+            origin,
             format!("ΔE00 {:.2}", self.de2000(self.color)),
         ];
         for name in self.parts().iter().flat_map(PartReport::emitters) {

@@ -7,6 +7,7 @@ use upglow_fit::{Appearance, CubeSummary, MaterialKind};
 use upglow_terminal::Report;
 
 use super::material_report::{ReflectanceReport, dye_names};
+use crate::metamers::{KnownReport, PaintReport};
 use crate::output::{Lines, Side, Table, triple};
 use crate::plot::Curves;
 
@@ -20,8 +21,10 @@ pub(crate) struct ColorReport<'a> {
     pub(crate) rgb: LinearRgb,
     /// The requested color under the cube's illuminant.
     pub(crate) xyz: Xyz,
-    /// `None` for a direct fit.
+    /// `None` for a direct fit and for a search.
     pub(crate) interpolation: Option<Interpolation>,
+    /// What a search among all materials that may have the color took it for.
+    pub(crate) paint: Option<&'a PaintReport>,
     pub(crate) de2000: f64,
     pub(crate) kind: MaterialKind,
     pub(crate) standing: StandingReport,
@@ -32,6 +35,7 @@ pub(crate) struct ColorReport<'a> {
     pub(crate) adaptation: Adaptation,
     pub(crate) lights: Vec<LightReport>,
     pub(crate) plot: Option<String>,
+    pub(crate) output: Option<String>,
     pub(crate) curves: &'a Curves,
 }
 
@@ -72,6 +76,9 @@ enum FluorescenceReport<'a> {
         dye_b: Option<&'a str>,
         density_a: f64,
         density_b: f64,
+        /// Shares of what is absorbed that come back as light.
+        yield_a: f64,
+        yield_b: f64,
         dose: f64,
     },
     Analytic {
@@ -109,6 +116,14 @@ impl<'a> PartReport<'a> {
         }
     }
 
+    /// Whether a dye of a film emits.
+    fn emits(&self) -> bool {
+        match self.fluorescence {
+            Some(FluorescenceReport::Film { yield_a, yield_b, .. }) => yield_a + yield_b > 0.0,
+            _ => false,
+        }
+    }
+
     /// The dyes or the emission peak, for a caption.
     pub(crate) fn emitters(&self) -> Vec<String> {
         match &self.fluorescence {
@@ -137,11 +152,13 @@ impl<'a> FluorescenceReport<'a> {
                 let [dye_a, dye_b] = dye_names(fluorescence, model)?;
                 Some(Self::Dyes { dye_a, dye_b, weight, concentration })
             }
-            Fluorescence::Film { densities: [density_a, density_b], .. } => {
+            Fluorescence::Film { dyes, densities: [density_a, density_b] } => {
                 let [dye_a, dye_b] = dye_names(fluorescence, model)?;
+                let curves = model.dyes()?.curves();
+                let [yield_a, yield_b] = dyes.map(|dye| curves[dye].quantum_yield);
                 let dye_b = (density_b > 0.0).then_some(dye_b);
                 let dose = fluorescence.dose();
-                Some(Self::Film { dye_a, dye_b, density_a, density_b, dose })
+                Some(Self::Film { dye_a, dye_b, density_a, density_b, yield_a, yield_b, dose })
             }
             Fluorescence::Analytic { emission_peak_nm, stokes_shift_nm, concentration } => {
                 Some(Self::Analytic { emission_peak_nm, stokes_shift_nm, concentration })
@@ -178,6 +195,10 @@ impl ColorReport<'_> {
     fn head(&self) -> String {
         let LinearRgb([r, g, b]) = self.rgb;
         let material = match (&self.interpolation, self.parts.len()) {
+            (None, 1) if self.paint.is_some() => "the best single one of a paint".into(),
+            (None, n) if self.paint.is_some() => {
+                format!("the best mixture of a paint, of {n} materials")
+            }
             (None, _) => "fitted directly".into(),
             (Some(interpolation), 1) => format!("looked up, {interpolation}, one material"),
             (Some(interpolation), n) => {
@@ -196,6 +217,15 @@ impl ColorReport<'_> {
             .add("material", material)
             .add("kind", self.kind_text())
             .add("ΔE00", format_args!("{:.4}{remark}", self.de2000));
+        if let Some(paint) = self.paint {
+            for KnownReport { light, rgb: LinearRgb([r, g, b]), de2000 } in &paint.known {
+                lines.add("known", format_args!("{light} ({r}, {g}, {b}), ΔE00 {de2000:.2}"));
+            }
+            lines.add("fluoresces", paint.fluoresces());
+        }
+        if let Some(output) = &self.output {
+            lines.add("output", output);
+        }
         if let Some(plot) = &self.plot {
             lines.add("plot", plot);
         }
@@ -204,6 +234,13 @@ impl ColorReport<'_> {
 
     fn kind_text(&self) -> &'static str {
         match self.kind {
+            MaterialKind::Reflectance if self.paint.is_some() => "reflectance alone",
+            MaterialKind::Dyed if self.paint.is_some() => {
+                match self.parts.iter().any(PartReport::emits) {
+                    true => "with dye",
+                    false => "with dyes that absorb only",
+                }
+            }
             MaterialKind::Reflectance => "reflectance alone, within the slope limit",
             MaterialKind::Dyed => "with dye, within the slope limits",
             MaterialKind::Steep => "steeper than the slope limits",
@@ -249,8 +286,10 @@ impl ColorReport<'_> {
             ("part", Side::Right),
             ("dose", Side::Right),
             ("density", Side::Right),
+            ("yield", Side::Right),
             ("dye", Side::Left),
             ("density", Side::Right),
+            ("yield", Side::Right),
             ("dye", Side::Left),
         ]);
         let head = ["part", "concentration", "emission peak nm", "Stokes shift nm"];
@@ -268,13 +307,24 @@ impl ColorReport<'_> {
                         (*dye_b).to_owned(),
                     ]);
                 }
-                Some(FluorescenceReport::Film { dye_a, dye_b, density_a, density_b, dose }) => {
+                Some(FluorescenceReport::Film {
+                    dye_a,
+                    dye_b,
+                    density_a,
+                    density_b,
+                    yield_a,
+                    yield_b,
+                    dose,
+                }) => {
+                    let of_b = |text: String| dye_b.map_or(String::new(), |_| text);
                     films.add([
                         number,
                         format!("{dose:.4}"),
                         format!("{density_a:.4}"),
+                        format!("{yield_a:.2}"),
                         (*dye_a).to_owned(),
-                        dye_b.map_or(String::new(), |_| format!("{density_b:.4}")),
+                        of_b(format!("{density_b:.4}")),
+                        of_b(format!("{yield_b:.2}")),
                         dye_b.unwrap_or_default().to_owned(),
                     ]);
                 }
@@ -310,16 +360,24 @@ impl ColorReport<'_> {
             ("X        Y        Z", Side::Right),
             ("R        G        B", Side::Right),
             ("fluorescent", Side::Right),
+            (if self.paint.is_some() { BAND } else { "" }, Side::Right),
         ]);
         for LightReport { name, appearance, .. } in &self.lights {
-            let Appearance { xyz, rgb, fluorescent_share, .. } = appearance;
+            let Appearance { xyz, rgb, fluorescent_share, band_de2000, .. } = appearance;
             let fluorescent = percent(*fluorescent_share);
-            table.add([name.clone(), triple(xyz.0), triple(rgb.0), fluorescent]);
+            table.add([
+                name.clone(),
+                triple(xyz.0),
+                triple(rgb.0),
+                fluorescent,
+                band(*band_de2000),
+            ]);
         }
         let Self { rgb_space: space, illuminant: own, adaptation, .. } = self;
         let dark = self.lights.iter().filter(|light| !light.is_adapted);
         let dark: Vec<&str> = dark.map(|light| light.name.as_str()).collect();
-        format!("{table}{}{SHARE_NOTE}\n", scale_note(space, own, *adaptation, &dark))
+        let note = if self.paint.is_some() { BAND_NOTE } else { "" };
+        format!("{table}{}{SHARE_NOTE}\n{note}", scale_note(space, own, *adaptation, &dark))
     }
 }
 
@@ -329,6 +387,17 @@ pub(super) const SHARE_NOTE: &str = "fluorescent: share of Y that dyes emit.";
 /// A share in percent; empty where it is not defined.
 pub(super) fn percent(share: Option<f64>) -> String {
     share.map_or(String::new(), |share| format!("{:.1} %", 100.0 * share))
+}
+
+/// The column of [`Appearance::band_de2000`].
+pub(super) const BAND: &str = "± ΔE00";
+
+/// What is in it.
+pub(super) const BAND_NOTE: &str =
+    "± ΔE00: nine of ten materials that may have the color are within this.\n";
+
+pub(super) fn band(band_de2000: Option<f64>) -> String {
+    band_de2000.map_or(String::new(), |band| format!("{band:.1}"))
 }
 
 /// What RGB and Y mean under lights, some of which are too `dark` to see by.

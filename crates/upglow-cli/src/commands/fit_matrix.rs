@@ -26,10 +26,9 @@ fn lights(args: &FitMatrixArgs) -> Result<Vec<Illuminant>, Failure> {
     if !given.is_empty() {
         return Ok(given);
     }
-    let named = |name| Illuminant::named(name).expect("the light is built in");
-    let cut = Illuminant::daylight_without_ultraviolet();
-    let [day, a, e, fl2, hp5] = ["D65", "A", "E", "FL2", "HP5"].map(named);
-    Ok(vec![day, a, e, cut, fl2, hp5, Illuminant::mineral_lamp()])
+    let named = ["D65", "A", "E", "D65-cut400", "FL2", "HP5"]
+        .map(|name| Illuminant::named(name).expect("the light is built in"));
+    Ok(named.into_iter().chain([Illuminant::mineral_lamp()]).collect())
 }
 
 pub(crate) fn run(args: &FitMatrixArgs, console: &Console) -> Result<(), Failure> {

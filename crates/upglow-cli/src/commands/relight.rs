@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use rayon::prelude::*;
 use upglow::Cube;
 use upglow_color::{Contract, ContractError, Illuminant, LinearRgb, Observer, Screen, Xyz};
-use upglow_fit::{Appearance, Relighting, View};
-use upglow_terminal::{Console, Failure, check_stopped};
+use upglow_fit::{Appearance, MetamerSearch, Progress, Relighting, View, Watch};
+use upglow_terminal::{Bar, Console, Failure, check_stopped};
 
 use super::color::fitter_of;
 use super::relight_report::{RelightReport, ViewReport};
@@ -15,7 +15,7 @@ use crate::color_list::{self, NamedColor};
 use crate::output::{push_cell, quoted, warn_of_ultraviolet};
 use crate::plot::Swatch;
 use crate::plot::swatches::{self, Chart, Column};
-use crate::{files, plan};
+use crate::{files, metamers, plan};
 
 /// More would take gigabytes: each takes 150 bytes of memory and [`ROW_BYTES`] of a CSV file, twice.
 const MOST_ROWS: usize = 2_000_000;
@@ -27,9 +27,14 @@ const ROW_BYTES: usize = 300;
 pub(super) const MOST_SHOWN: usize = 64;
 
 const HEADER: &str = "name,r,g,b,light,observer,is_adapted,x,y,z,lab_l,lab_a,lab_b,\
-                      r_under,g_under,b_under,de2000,fluorescent_share,whiteness,tint";
+                      r_under,g_under,b_under,de2000,fluorescent_share,whiteness,tint,band_de2000";
+
+/// Searches for all materials that may have a color take half a second each.
+const MOST_SEARCHED: usize = 1000;
 
 pub(crate) fn run(args: &RelightArgs, console: &Console) -> Result<(), Failure> {
+    let is_search = args.paint.kind.is_some() || args.band;
+    args.paint.check_answer(args.paint.kind.is_some(), "--kind")?;
     let listed = listed(args)?;
     for (output, endings) in [(&args.csv, files::CSV), (&args.plot, files::SVG)] {
         if let Some(output) = output {
@@ -52,8 +57,20 @@ pub(crate) fn run(args: &RelightArgs, console: &Console) -> Result<(), Failure> 
     }
     let colors = listed.unwrap_or_else(|| nodes(&cube));
     check_rows(colors.len(), lights.len(), observers.len())?;
-    let seen = console.work(args.threads, |_| {
-        let relighting = relighting(&cube, &colors, args)?;
+    if is_search && colors.len() > MOST_SEARCHED {
+        let message = format!(
+            "{} colors, expected at most {MOST_SEARCHED} with --kind or --band, which take half a second for each",
+            colors.len()
+        );
+        return Err(Failure::Usage(message));
+    }
+    let search = || metamers::search(cube.contract(), &[], args.paint.kind.unwrap_or_default());
+    let search = is_search.then(search).transpose()?;
+    let seen = console.work(args.threads, |bar| {
+        let relighting = match &search {
+            Some(search) => searched(&cube, &colors, args, search, bar)?,
+            None => relighting(&cube, &colors, args)?,
+        };
         let views = views(&relighting, &lights, &observers)?;
         let csv = args.csv.as_ref().map(|_| csv(&colors, &views));
         Ok::<_, Failure>((views, csv))
@@ -77,14 +94,19 @@ pub(crate) fn run(args: &RelightArgs, console: &Console) -> Result<(), Failure> 
     })
 }
 
+/// Whether colors need not be within the cube.
+fn is_fitted(args: &RelightArgs) -> bool {
+    args.direct || args.paint.kind.is_some()
+}
+
 /// The colors that were given; `None` for all nodes.
 fn listed(args: &RelightArgs) -> Result<Option<Vec<NamedColor>>, Failure> {
     match (&args.red, &args.green, &args.blue, &args.colors) {
         (Some(red), Some(green), Some(blue), _) => {
-            let rgb = plan::color([red, green, blue], args.direct)?;
+            let rgb = plan::color([red, green, blue], is_fitted(args))?;
             Ok(Some(vec![NamedColor { name: String::new(), rgb }]))
         }
-        (.., Some(list)) => color_list::read(list, args.direct).map(Some),
+        (.., Some(list)) => color_list::read(list, is_fitted(args)).map(Some),
         _ if args.nodes => Ok(None),
         _ => {
             let message = "not given, expected R G B, --colors FILE.csv or --nodes";
@@ -141,6 +163,32 @@ fn relighting<'c>(
     }
     let rgb: Vec<LinearRgb> = colors.iter().map(|color| color.rgb).collect();
     Relighting::of_colors(cube, &rgb).map_err(|error| Failure::input("R G B", error))
+}
+
+/// All materials that may have the colors, and the answers to be seen: the best of them, or what the cube gives.
+fn searched<'c>(
+    cube: &'c Cube,
+    colors: &[NamedColor],
+    args: &RelightArgs,
+    search: &'c MetamerSearch,
+    bar: &Bar,
+) -> Result<Relighting<'c>, Failure> {
+    let contract = cube.contract();
+    let mut metamers = Vec::with_capacity(colors.len());
+    for (done, color) in colors.iter().enumerate() {
+        check_stopped()?;
+        bar.progress(Progress { stage: "searching materials", done, total: colors.len() });
+        let known = metamers::colors(contract, color.rgb, &[]);
+        metamers.push(search.of(&known).map_err(metamers::refused)?);
+    }
+    let answers = if args.paint.kind.is_some() {
+        let answer = |found| metamers::answer(found, &args.paint);
+        let answers = metamers.iter().map(answer).collect::<Result<Vec<_>, _>>()?;
+        Relighting::of_own_materials(contract, answers)
+    } else {
+        relighting(cube, colors, args)?
+    };
+    Ok(answers.with_metamers(search, metamers))
 }
 
 /// Each light for each observer.
@@ -202,6 +250,7 @@ fn csv(colors: &[NamedColor], views: &[ViewReport]) -> Vec<u8> {
             }
             let whiteness = [seen.whiteness.map(|w| w.whiteness), seen.whiteness.map(|w| w.tint)];
             let maybe = [seen.de2000, seen.fluorescent_share].into_iter().chain(whiteness);
+            let maybe = maybe.chain([seen.band_de2000]);
             maybe.for_each(|value| push_cell(&mut text, value.unwrap_or(f64::NAN)));
             text.push(b'\n');
         }

@@ -5,7 +5,7 @@ use upglow_color::{Adaptation, Xyz};
 use upglow_fit::Appearance;
 use upglow_terminal::Report;
 
-use super::color_report::{SHARE_NOTE, percent, scale_note};
+use super::color_report::{BAND, BAND_NOTE, SHARE_NOTE, band, percent, scale_note};
 use super::relight::MOST_SHOWN;
 use crate::color_list::NamedColor;
 use crate::output::{Lines, Side, Table, decimal, triple};
@@ -62,10 +62,11 @@ impl RelightReport<'_> {
             ("fluorescent", Side::Right),
             ("W", Side::Right),
             ("T", Side::Right),
+            (if self.has_bands() { BAND } else { "" }, Side::Right),
         ]);
         let names_observers = self.views.iter().any(|v| v.observer != self.views[0].observer);
         for view in self.views {
-            let Appearance { xyz, lab, rgb, de2000, fluorescent_share, whiteness } =
+            let Appearance { xyz, lab, rgb, de2000, fluorescent_share, whiteness, band_de2000 } =
                 view.appearances[index];
             let observer =
                 if names_observers { format!(", {}", view.observer) } else { String::new() };
@@ -81,10 +82,16 @@ impl RelightReport<'_> {
                 percent(fluorescent_share),
                 some(whiteness.map(|w| w.whiteness), 1),
                 some(whiteness.map(|w| w.tint), 1),
+                band(band_de2000),
             ]);
         }
         let name = if color.name.is_empty() { String::new() } else { format!("{}: ", color.name) };
         format!("{name}{} {}\n{table}", self.rgb_space, color.numbers())
+    }
+
+    fn has_bands(&self) -> bool {
+        let mut seen = self.views.iter().flat_map(|view| &view.appearances);
+        seen.next().is_some_and(|appearance| appearance.band_de2000.is_some())
     }
 
     fn notes(&self) -> String {
@@ -105,6 +112,7 @@ impl RelightReport<'_> {
              of the CIE, of whites under light like D65.\n",
             self.illuminant
         );
+        text += if self.has_bands() { BAND_NOTE } else { "" };
         let mut files = Lines::default();
         for (name, path) in [("table", &self.csv), ("plot", &self.plot)] {
             if let Some(path) = path {

@@ -36,11 +36,17 @@ const REFERENCE_NM: f64 = 560.0;
 /// `iso13655`, measurement condition M2.
 const M2_FROM_NM: f64 = 420.0;
 
+/// Between the name of a light and the wavelength below which a filter takes it.
+const CUT: &str = "-CUT";
+/// Where filters for ultraviolet begin to let light pass, nm.
+const CUTS_NM: [u32; 2] = [320, 500];
+
 impl Illuminant {
     /// The built-in lights as a list for messages and help.
     pub const FAMILIES: &str = "D50, D55, D60, D65, D75, A, E, FL1 to FL12, FL3.1 to FL3.15, \
         HP1 to HP5, LED-B1 to LED-B5, LED-BH1, LED-RGB1, LED-V1, LED-V2, ID50, ID65, M0, M1, M2, \
-        1000K to 100000K (blackbody), D4000K to D25000K (daylight)";
+        1000K to 100000K (blackbody), D4000K to D25000K (daylight), and any of them behind a filter that \
+        takes all below 320 to 500 nm, such as D65-cut400";
 
     /// Every name of a built-in light that is not made of a temperature.
     #[must_use]
@@ -61,17 +67,21 @@ impl Illuminant {
     /// - `3000K`: a blackbody of that temperature, 1000 to 100000 K
     /// - `D6200K`: daylight of that correlated color temperature, 4000 to 25000 K. `D65` is `D6503.5K`,
     ///   nearly: its nominal temperature is that of an older scale
+    /// - `D65-cut400`: one of these behind a filter that takes all power below that wavelength, 320 to 500 nm
     ///
     /// # Errors
     ///
     /// [`IlluminantError::Unknown`] lists the known names; [`IlluminantError::Temperature`] if there is
-    /// no formula for the temperature.
+    /// no formula for the temperature; [`IlluminantError::Cut`] if the filter is none for ultraviolet.
     ///
     /// # Source
     ///
     /// `cie015`: illuminants A, D, FL, HP, LED and ID. `iso13655`: M0 to M2.
     pub fn named(name: &str) -> Result<Self, IlluminantError> {
         let word = name.to_ascii_uppercase();
+        if let Some((light, nm)) = word.rsplit_once(CUT) {
+            return Self::cut(name, light, nm);
+        }
         if let Some((known, nominal_k)) = DAYLIGHTS.iter().find(|(known, _)| *known == word) {
             return Ok(Self::nominal_daylight(known, *nominal_k));
         }
@@ -84,6 +94,19 @@ impl Illuminant {
                 Some(lamp) => Ok(lamp),
                 None => Self::of_temperature(&word, name),
             },
+        }
+    }
+
+    /// A light behind a filter.
+    fn cut(name: &str, light: &str, nm: &str) -> Result<Self, IlluminantError> {
+        let light = Self::named(light)?;
+        let [least_nm, most_nm] = CUTS_NM;
+        match nm.parse::<u32>() {
+            Ok(nm) if (least_nm..=most_nm).contains(&nm) => {
+                let filtered = format!("{}{}{nm}", light.name, CUT.to_ascii_lowercase());
+                Ok(light.filtered(&filtered, f64::from(nm)))
+            }
+            _ => Err(IlluminantError::Cut { name: name.into(), range_nm: CUTS_NM }),
         }
     }
 

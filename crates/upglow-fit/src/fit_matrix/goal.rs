@@ -5,12 +5,12 @@ use upglow_color::{
 };
 
 /// Lights of the goal: whole ones, ultraviolet lamps, and parts of daylight.
-pub(super) const LIGHTS: usize = WHOLE + LAMPS + PARTS;
+pub(super) const LIGHTS: usize = WHOLE.len() + LAMPS + PARTS;
 /// Three numbers for each light.
 pub(super) const ROWS: usize = 3 * LIGHTS;
 
 /// Daylight, incandescent light, equal energy, and daylight without ultraviolet.
-const WHOLE: usize = 4;
+const WHOLE: [&str; 4] = ["D65", "A", "E", "D65-cut400"];
 
 /// Lamps from 330 to 420 nm; each has as much power as daylight, to which the observer is adapted.
 const LAMPS: usize = 7;
@@ -70,9 +70,7 @@ impl MatrixGoal {
         let contract = Contract::default();
         let day = MatrixSums::new(measured, &contract.illuminant, &contract.observer)?;
         let by_xyz = day.difference_by_xyz(day.color(measured));
-        let named = |name| Illuminant::named(name).expect("it is built in");
-        let cut = Illuminant::daylight_without_ultraviolet();
-        let whole = [named("D65"), named("A"), named("E"), cut];
+        let whole = WHOLE.map(|name| Illuminant::named(name).expect("it is built in"));
         let mut lights = Vec::with_capacity(LIGHTS);
         for light in whole {
             let sums = MatrixSums::new(measured, &light, &contract.observer)?;

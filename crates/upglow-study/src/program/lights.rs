@@ -11,16 +11,15 @@ pub(crate) const SEVEN: Range<usize> = 1..8;
 /// metal halide lamp, a white LED, and daylight behind a window. Daylight without ultraviolet, and ultraviolet
 /// alone.
 pub(crate) fn lights() -> Vec<Illuminant> {
-    let mut lights = ["D65", "A", "E", "FL2", "FL11", "HP5", "LED-B3", "ID65"].map(named).to_vec();
-    lights.extend([Illuminant::daylight_without_ultraviolet(), Illuminant::mineral_lamp()]);
+    let mut lights =
+        ["D65", "A", "E", "FL2", "FL11", "HP5", "LED-B3", "ID65", "D65-cut400"].map(named).to_vec();
+    lights.push(Illuminant::mineral_lamp());
     lights
 }
 
 /// Daylight, incandescent light, equal energy, and daylight without ultraviolet.
 pub(crate) fn smooth_lights() -> Vec<Illuminant> {
-    let mut lights = ["D65", "A", "E"].map(named).to_vec();
-    lights.push(Illuminant::daylight_without_ultraviolet());
-    lights
+    ["D65", "A", "E", "D65-cut400"].map(named).to_vec()
 }
 
 fn named(name: &str) -> Illuminant {

@@ -134,6 +134,13 @@ impl<'m> Mixture<'m> {
         self.parts().map(|(weight, material)| sums.color(material) * weight).sum()
     }
 
+    /// The color, and what of it is light that fluorescence emits.
+    pub fn color_and_emission(&self, sums: &ModelOnGrid) -> (Xyz, Xyz) {
+        let each = || self.parts().map(|(weight, part)| (weight, sums.color_and_emission(part)));
+        let color = each().map(|(weight, (color, _))| color * weight).sum();
+        (color, each().map(|(weight, (_, emitted))| emitted * weight).sum())
+    }
+
     fn lobes(&self) -> impl Iterator<Item = (f64, Lobe<'m>)> + '_ {
         self.parts().flat_map(|(weight, material)| {
             material.fluorescence.lobes(self.model).map(move |lobe| (weight, lobe))
