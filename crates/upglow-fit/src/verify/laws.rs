@@ -1,6 +1,6 @@
 //! The laws that are checked color by color.
 
-use upglow::{Cube, Interpolation};
+use upglow::{Cube, Interpolation, Node};
 use upglow_color::Adaptation;
 
 use super::VerifyOptions;
@@ -81,7 +81,13 @@ impl Law {
     pub(super) fn rule(self, cube: &Cube, options: &VerifyOptions) -> Rule {
         let [name, about, unit] = self.texts();
         let fixed = |limit, tolerance| (Some(limit), tolerance, true);
-        let gray = |limit| (Some(limit), 0.0, cube.contract().adaptation == Adaptation::Bradford);
+        // A cube of one material, such as that of a measured matrix, has no grays of its own.
+        let [first, .., last] = cube.nodes() else {
+            unreachable!("a cube has eight nodes or more")
+        };
+        let has_grays = cube.contract().adaptation == Adaptation::Bradford
+            && Node { de2000: last.de2000, ..*first } != *last;
+        let gray = |limit| (Some(limit), 0.0, has_grays);
         let slope = |limit: Option<f64>| (limit, limit.unwrap_or(0.0) * SLOPE_ROUNDING, true);
         let (limit, tolerance, applies) = match self {
             Self::Energy => fixed(1.0, ROUNDING),
