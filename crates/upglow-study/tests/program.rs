@@ -104,14 +104,18 @@ fn the_claims_are_printed_as_one_json_document() {
 #[test]
 fn surfaces_under_other_lights_are_tables_or_one_json_document() {
     let folder = tempfile::tempdir().unwrap();
-    let printed = done(folder.path(), "relight");
+    let printed = done(folder.path(), "relight --only natural --only jung2019");
     let rows = printed.lines().filter(|line| line.starts_with("| natural |"));
     assert_eq!(rows.count(), 2, "{printed}");
-    let printed = done(folder.path(), "relight --json");
+    let printed = done(folder.path(), "relight --json --only natural");
     assert!(printed.starts_with(r#"{"sets":[{"samples":"99 object colors","count":99,"#));
     assert_eq!(printed.matches('\n').count(), 1);
-    let refused = refused(folder.path(), 1, "relight --bispectral absent");
-    assert!(refused.contains("expected a folder of BFC-450 matrices"), "{refused}");
+    let message = refused(folder.path(), 1, "relight --bispectral absent");
+    assert!(message.contains("expected a folder of BFC-450 matrices"), "{message}");
+    let message = refused(folder.path(), 2, "relight --only neutral");
+    let expected =
+        "--only: unknown way \"neutral\", expected one of: natural; konig2020; jung2019;";
+    assert!(message.contains(expected), "{message}");
 }
 
 #[test]

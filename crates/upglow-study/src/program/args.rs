@@ -24,7 +24,8 @@ pub(crate) enum Command {
     Figures(FiguresArgs),
     /// Measure the claims of the paper and print a Markdown report; takes minutes
     Reproduce(ReproduceArgs),
-    /// Measure how materials made from the color of real surfaces look under other lights, beside the surfaces
+    /// Measure how materials made from the color of real surfaces look under other lights, beside the surfaces;
+    /// takes minutes
     Relight(RelightArgs),
     /// Measure which colors get a dye by the rule of choosing, and how much more than the least; takes
     /// minutes
@@ -72,6 +73,9 @@ pub(crate) struct RelightArgs {
     /// only surfaces without fluorescence are compared
     #[arg(long, value_name = "FOLDER")]
     pub(crate) bispectral: Option<PathBuf>,
+    /// Only this way to make materials, such as natural or "fluorescent, single"; may be given again
+    #[arg(long, value_name = "WAY")]
+    pub(crate) only: Vec<String>,
     #[command(flatten)]
     pub(crate) threads: Threads,
 }

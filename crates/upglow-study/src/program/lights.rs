@@ -22,6 +22,7 @@ pub(crate) fn smooth_lights() -> Vec<Illuminant> {
     ["D65", "A", "E", "D65-cut400"].map(named).to_vec()
 }
 
-fn named(name: &str) -> Illuminant {
+/// A built-in light.
+pub(crate) fn named(name: &str) -> Illuminant {
     Illuminant::named(name).expect("the light is built in")
 }

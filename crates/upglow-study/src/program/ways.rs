@@ -1,6 +1,7 @@
 //! Ways to make a material of what is known of a sample.
 
 use std::borrow::Cow;
+use std::sync::Arc;
 
 use upglow::{
     Accounting, DyeModel, DyeOptions, DyeSet, FilmModel, Fluorescence, Material, Mixing, Mixture,
@@ -9,10 +10,12 @@ use upglow::{
 use upglow_color::{Choice, Contract, DonaldsonMatrix, Illuminant, Xyz};
 use upglow_fit::{
     Fit, FitOptions, FitOptionsError, Fitter, GivenOptions, MatrixFit, MatrixFitError,
-    MatrixFitOptions, Method, Preset, fit_matrix,
+    MatrixFitOptions, MetamerError, MetamerSearch, Metamers, Method, OwnMaterial, PaintKind,
+    Preset, fit_matrix,
 };
 
-use crate::samples::Sample;
+use crate::lights::named;
+use crate::samples::{Sample, SampleSet};
 
 /// A way to make a material of what is known of a sample.
 pub(crate) trait Way: Sync {
@@ -22,6 +25,11 @@ pub(crate) trait Way: Sync {
     /// The lights under which it knows the color of a sample. Under these it predicts nothing.
     fn told(&self) -> Vec<Illuminant> {
         vec![Illuminant::default()]
+    }
+
+    /// Whether it knows what it takes of the samples of a set; by default their colors, which all have.
+    fn is_for(&self, _: &SampleSet) -> bool {
+        true
     }
 
     /// The material of a sample.
@@ -121,11 +129,21 @@ pub(crate) fn presets_and_limits(contract: &Contract) -> Vec<OneColor> {
     presets.chain(OTHER_LIMITS_PER_NM.map(limited)).collect()
 }
 
-/// [`presets_and_limits`], then two presets with other dyes and rules of fluorescence, and by the method of the
-/// paper.
-pub(crate) fn ways() -> Vec<OneColor> {
+/// Every way that is told colors.
+pub(crate) fn ways() -> Vec<Box<dyn Way>> {
+    fits().into_iter().chain(among_metamers()).collect()
+}
+
+/// Fits of the color under D65.
+pub(crate) fn fits() -> Vec<Box<dyn Way>> {
+    let fits = presets_and_limits(&Contract::default()).into_iter().chain(options());
+    fits.map(|way| Box::new(way) as Box<dyn Way>).collect()
+}
+
+/// Two presets with other dyes and rules of fluorescence, and by the method of the paper.
+fn options() -> Vec<OneColor> {
     let contract = Contract::default();
-    let mut ways = presets_and_limits(&contract);
+    let mut ways = Vec::new();
     let mut add = |preset: Preset, with: &str, model: Model, options: FitOptions| {
         let way = OneColor::try_new(format!("{preset}, {with}"), &contract, &model, options);
         ways.push(way.expect("the options are in range"));
@@ -159,6 +177,67 @@ pub(crate) fn ways() -> Vec<OneColor> {
     ways
 }
 
+/// An answer among all materials that may have the known colors.
+#[derive(Debug)]
+pub(crate) struct AmongMetamers {
+    name: String,
+    search: Arc<MetamerSearch>,
+    /// Lights under which colors are known, and the whites that they are relative to.
+    told: Vec<(Illuminant, Xyz)>,
+    answer: Answer,
+}
+
+/// A single material or a mixture.
+type Answer = fn(&Metamers<'_>) -> Result<OwnMaterial, MetamerError>;
+
+/// Paints of every kind by their colors under D65, and fluorescent paints by colors under other lights too: a photo
+/// without ultraviolet, or an ultraviolet lamp and incandescent light.
+fn among_metamers() -> Vec<Box<dyn Way>> {
+    const IN_RANGE: &str = "the lights are visible, and there are at most two";
+    let contract = Contract::default();
+    let [cut, a] = ["D65-cut400", "A"].map(named);
+    let others = [vec![cut], vec![Illuminant::mineral_lamp(), a]];
+    let others = others.map(|others| (PaintKind::Fluorescent, others));
+    let alone = PaintKind::ALL.iter().map(|kind| (*kind, Vec::new()));
+    let search = |(kind, others): (PaintKind, Vec<Illuminant>)| {
+        let search = MetamerSearch::new(&contract, &others, kind).expect(IN_RANGE);
+        let search = Arc::new(search);
+        let also: String = others.iter().map(|light| format!(" + {}", light.name())).collect();
+        let white = |light: &Illuminant| search.light(light).white();
+        let lights = std::iter::once(&contract.illuminant).chain(&others);
+        let told: Vec<_> = lights.map(|light| (light.clone(), white(light))).collect();
+        let way = |(word, answer): (&str, Answer)| {
+            let name = format!("{kind}, {word}{also}");
+            let (search, told) = (search.clone(), told.clone());
+            Box::new(AmongMetamers { name, search, told, answer }) as Box<dyn Way>
+        };
+        let answers: [(&str, Answer); 2] =
+            [("single", |found| found.single()), ("mixture", |found| found.mixture())];
+        answers.map(way)
+    };
+    alone.chain(others).flat_map(search).collect()
+}
+
+impl Way for AmongMetamers {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn told(&self) -> Vec<Illuminant> {
+        self.told.iter().map(|(light, _)| light.clone()).collect()
+    }
+
+    fn material(&self, sample: &Sample) -> Made<'_> {
+        let possible = |v: f64| v.clamp(-Fitter::BRIGHTEST, Fitter::BRIGHTEST);
+        let color =
+            |(light, white): &(Illuminant, Xyz)| Xyz(sample.color(light, *white).0.map(possible));
+        let colors: Vec<Xyz> = self.told.iter().map(color).collect();
+        let metamers = self.search.of(&colors).expect("a color in range for each light");
+        let answer = (self.answer)(&metamers).expect("built-in dyes make a set");
+        Made { model: Cow::Owned(answer.model().clone()), parts: answer.parts().to_vec() }
+    }
+}
+
 /// What comes nearest to samples whose matrices are known as a whole.
 #[derive(Clone, Debug)]
 pub(crate) struct WholeMatrix(Vec<(String, MatrixFit)>);
@@ -184,6 +263,10 @@ impl Way for WholeMatrix {
         "told the whole matrix"
     }
 
+    fn is_for(&self, set: &SampleSet) -> bool {
+        set.samples.iter().all(|sample| self.0.iter().any(|(name, _)| *name == sample.name))
+    }
+
     fn material(&self, sample: &Sample) -> Made<'_> {
         let found = self.0.iter().find(|(name, _)| *name == sample.name);
         let (_, fit) = found.expect("it was made for this sample");
@@ -195,7 +278,6 @@ impl Way for WholeMatrix {
 mod tests {
     use super::*;
     use crate::relight::{LitSet, Relit};
-    use crate::samples::SampleSet;
     use upglow::Sigmoid;
 
     /// Half of a dark and half of a light gray, whatever the sample; told its colors under two lights.

@@ -4,14 +4,14 @@ use std::fmt::Write;
 
 use serde::Serialize;
 use upglow_color::Illuminant;
-use upglow_fit::Watch;
+use upglow_fit::{Progress, Watch};
 use upglow_terminal::{Console, Failure, Report};
 
 use crate::args::RelightArgs;
 use crate::bispectral::read_folder;
 use crate::lights::{SEVEN, lights};
 use crate::relight::{LitSet, Relit, sets};
-use crate::samples::Sample;
+use crate::samples::SampleSet;
 use crate::spread::Spread;
 use crate::ways::{Way, WholeMatrix, ways};
 
@@ -66,32 +66,48 @@ impl Mean {
 
 pub(super) fn run(args: &RelightArgs, console: &Console) -> Result<(), Failure> {
     let measured = read_folder(args.bispectral.as_deref())?;
-    let report = console.work(args.threads, |bar| measure(&measured, bar))?;
+    let mut ways = ways();
+    if !measured.is_empty() {
+        let whole = WholeMatrix::of(&measured);
+        ways.push(Box::new(whole.map_err(|(name, error)| Failure::input(name, error))?));
+    }
+    for name in &args.only {
+        if !ways.iter().any(|way| way.name() == name) {
+            let names: Vec<&str> = ways.iter().map(|way| way.name()).collect();
+            let message = format!("unknown way {name:?}, expected one of: {}", names.join("; "));
+            return Err(Failure::option("--only", message));
+        }
+    }
+    ways.retain(|way| args.only.is_empty() || args.only.iter().any(|name| name == way.name()));
+    let report = console.work(args.threads, |bar| measure(&sets(&measured), &ways, bar))?;
     console.print(&report?)
 }
 
-/// Every way on every set.
+/// Every way on every set, for whose samples it makes materials.
 ///
 /// # Errors
 ///
-/// [`Failure`] if `watch` stopped the work, or no material comes near to a measured one.
-pub(crate) fn measure(measured: &[Sample], watch: &dyn Watch) -> Result<RelightReport, Failure> {
+/// [`Failure::Stopped`] if `watch` stopped the work.
+pub(crate) fn measure(
+    sets: &[SampleSet],
+    ways: &[Box<dyn Way>],
+    watch: &dyn Watch,
+) -> Result<RelightReport, Failure> {
     let lights = lights();
-    let one_color = ways();
-    let whole = WholeMatrix::of(measured).map_err(|(name, error)| Failure::input(name, error))?;
-    let mut reports = Vec::new();
-    for set in sets(measured) {
-        let mut rows = Vec::with_capacity(one_color.len() + 1);
-        let mut ways: Vec<&dyn Way> = one_color.iter().map(|way| way as &dyn Way).collect();
-        if set.samples == measured {
-            ways.push(&whole);
-        }
-        let lit = LitSet::new(&set, &lights);
-        for way in ways {
+    let mut reports = Vec::with_capacity(sets.len());
+    let total = sets.len() * ways.len();
+    for (s, set) in sets.iter().enumerate() {
+        let lit = LitSet::new(set, &lights);
+        let mut rows = Vec::with_capacity(ways.len());
+        for (w, way) in ways.iter().enumerate() {
             if watch.stopped() {
                 return Err(Failure::Stopped);
             }
-            let relit = Relit::of(&lit, way);
+            watch.progress(Progress { stage: "relighting", done: s * ways.len() + w, total });
+            if !way.is_for(set) {
+                continue;
+            }
+            let relit = Relit::of(&lit, way.as_ref());
             let light = |(k, light): (usize, &Illuminant)| LightReport {
                 light: light.name().to_owned(),
                 told: relit.told[k],
@@ -105,7 +121,9 @@ pub(crate) fn measure(measured: &[Sample], watch: &dyn Watch) -> Result<RelightR
                 mean: Mean::of(relit.means(0..lights.len())),
             });
         }
-        reports.push(SetReport { samples: set.name, count: set.samples.len(), ways: rows });
+        if !rows.is_empty() {
+            reports.push(SetReport { samples: set.name, count: set.samples.len(), ways: rows });
+        }
     }
     Ok(RelightReport { sets: reports })
 }
