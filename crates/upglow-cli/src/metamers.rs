@@ -59,17 +59,8 @@ pub(crate) fn search(
     MetamerSearch::new(contract, &lights, kind).map_err(refused)
 }
 
-/// The color under the light of the contract and the other known ones.
-pub(crate) fn colors(contract: &Contract, rgb: LinearRgb, known: &[KnownColor]) -> Vec<Xyz> {
-    let own = contract.on(Grid::FIT).xyz_from_rgb(rgb);
-    let others = known.iter().map(|KnownColor { light, rgb }| {
-        contract.seen_under(light, Grid::FIT).colorimetry.xyz_from_rgb(*rgb)
-    });
-    std::iter::once(own).chain(others).collect()
-}
-
 /// The material that is the answer.
-pub(crate) fn answer(metamers: &Metamers<'_>, args: &PaintArgs) -> Result<OwnMaterial, Failure> {
+pub(crate) fn answer(metamers: &Metamers, args: &PaintArgs) -> Result<OwnMaterial, Failure> {
     let found = match args.answer.unwrap_or_default() {
         AnswerName::Single => metamers.single(),
         AnswerName::Mixture => metamers.mixture(),

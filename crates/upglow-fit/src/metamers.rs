@@ -1,10 +1,12 @@
 //! The materials that may have a color: all that match it, and how probable each is.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 use upglow::{Accounting, DyeSet, FilmModel, Model, QuantumYield};
 use upglow_color::{
-    Contract, ContractError, Illuminant, MeasuredDye, Observer, Xyz, ciede2000, difference_by_xyz,
-    lab_from_xyz,
+    Contract, ContractError, Illuminant, LinearRgb, MeasuredDye, MissingUltraviolet, Observer, Xyz,
+    ciede2000, difference_by_xyz, lab_from_xyz,
 };
 
 mod blend;
@@ -34,19 +36,23 @@ use prior::{Dyes, SLOPE_MAX_PER_NM, densities};
 /// use upglow_color::{Contract, Illuminant, LinearRgb};
 /// use upglow_fit::{MetamerSearch, PaintKind};
 ///
-/// let contract = Contract::default();
-/// let search = MetamerSearch::new(&contract, &[], PaintKind::Fluorescent)?;
-/// let orange = contract.on(upglow_color::Grid::FIT).xyz_from_rgb(LinearRgb([0.9, 0.3, 0.02]));
-/// let metamers = search.of(&[orange])?;
-/// let a = search.light(&Illuminant::named("A")?);
+/// let search = MetamerSearch::new(&Contract::default(), &[], PaintKind::Fluorescent)?;
+/// let metamers = search.of_rgb(&[LinearRgb([0.9, 0.3, 0.02])])?;
+/// let a = metamers.light(&Illuminant::named("A")?);
 /// println!("within {:.1} ΔE00 of {:?} under A", metamers.band(&a, metamers.mean(&a), 0.9), metamers.mean(&a));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct MetamerSearch {
+    kind: PaintKind,
+    among: Arc<Among>,
+}
+
+/// What is searched: films of dyes, under lights.
+#[derive(Debug)]
+struct Among {
     dyes: Vec<MeasuredDye>,
     contract: Contract,
-    kind: PaintKind,
     model: Model,
     /// The light of the contract, then those of the other known colors.
     known: Vec<MetamerLight>,
@@ -99,6 +105,12 @@ const MOST_KEPT: usize = 256;
 const MOST_ANSWERS: usize = 64;
 
 impl MetamerSearch {
+    /// How many colors programs search one after another: each takes half a second.
+    pub const MOST_IN_TURN: usize = 1000;
+
+    /// What the record of a cube calls the way in which its material was found.
+    pub const METHOD: &str = "metamers";
+
     /// A search for colors under the light of the contract, then under `others`, of paints of a kind, among all
     /// built-in dyes.
     ///
@@ -136,18 +148,37 @@ impl MetamerSearch {
         let light = |light: &Illuminant| MetamerLight::new(&model, contract, light);
         let known = std::iter::once(&contract.illuminant).chain(others).map(light).collect();
         let expected = expected_lights().iter().map(light).collect();
-        Ok(Self { dyes, contract: contract.clone(), kind, known, expected, model })
+        let contract = contract.clone();
+        let among = Arc::new(Among { dyes, contract, known, expected, model });
+        Ok(Self { kind, among })
     }
 
     /// A light to see metamers under.
     pub fn light(&self, light: &Illuminant) -> MetamerLight {
-        MetamerLight::new(&self.model, &self.contract, light)
+        MetamerLight::new(&self.among.model, &self.among.contract, light)
     }
 
-    /// A light to see metamers under, for another observer.
-    pub(crate) fn light_for(&self, observer: &Observer, light: &Illuminant) -> MetamerLight {
-        let contract = Contract { observer: observer.clone(), ..self.contract.clone() };
-        MetamerLight::new(&self.model, &contract, light)
+    /// What is to say about a light: ultraviolet that is not known, where dyes that may emit absorb it.
+    pub fn missing_ultraviolet(&self, light: &Illuminant) -> Option<MissingUltraviolet> {
+        let may_emit = self.kind != PaintKind::Ordinary;
+        self.among.model.missing_ultraviolet(light).filter(|_| may_emit)
+    }
+
+    /// The materials that may have these linear colors, one for each light of the search, as they look under it:
+    /// [`Contract::seen_under`]. Otherwise as [`Self::of`].
+    ///
+    /// # Errors
+    ///
+    /// [`MetamerError`] if there is not one color for each light, or one is no color of a material.
+    pub fn of_rgb(&self, colors: &[LinearRgb]) -> Result<Metamers, MetamerError> {
+        self.check_count(colors.len())?;
+        let colors = self.among.known.iter().zip(colors);
+        self.of(&colors.map(|(light, &rgb)| light.xyz_from_rgb(rgb)).collect::<Vec<_>>())
+    }
+
+    fn check_count(&self, found: usize) -> Result<(), MetamerError> {
+        let expected = self.among.known.len();
+        if found == expected { Ok(()) } else { Err(MetamerError::Count { found, expected }) }
     }
 
     /// The materials that may have these colors, one for each light of the search: relative to white as
@@ -157,22 +188,25 @@ impl MetamerSearch {
     /// # Errors
     ///
     /// [`MetamerError`] if there is not one color for each light, or one is no color of a material.
-    pub fn of(&self, colors: &[Xyz]) -> Result<Metamers<'_>, MetamerError> {
-        if colors.len() != self.known.len() {
-            let (found, expected) = (colors.len(), self.known.len());
-            return Err(MetamerError::Count { found, expected });
-        }
-        for (light, color) in self.known.iter().zip(colors) {
+    pub fn of(&self, colors: &[Xyz]) -> Result<Metamers, MetamerError> {
+        self.check_count(colors.len())?;
+        for (light, color) in self.among.known.iter().zip(colors) {
             if !color.0.iter().all(|v| v.is_finite() && v.abs() <= BRIGHTEST) {
                 return Err(MetamerError::Color { light: light.name().into(), xyz: color.0 });
             }
         }
-        let lights = self.known.iter().zip(colors).enumerate();
+        Ok(self.found(colors))
+    }
+
+    /// The materials that have colors which were checked.
+    fn found(&self, colors: &[Xyz]) -> Metamers {
+        let Among { dyes, known: lights, .. } = &*self.among;
+        let lights = lights.iter().zip(colors).enumerate();
         let known: Vec<Known<'_>> =
             lights.map(|(k, (light, &color))| Known::new(light, color, k == 0)).collect();
         let mut found = Vec::new();
         for (does, probability) in self.kind.hypotheses() {
-            let posterior = Posterior { known: &known, dyes: self.dyes.len(), does };
+            let posterior = Posterior { known: &known, dyes: dyes.len(), does };
             let modes = posterior.modes().into_iter();
             found
                 .extend(modes.map(|mode| Found { weight: mode.weight + probability.ln(), ..mode }));
@@ -183,7 +217,7 @@ impl MetamerSearch {
         found.iter_mut().for_each(|found| found.weight = (found.weight - most).exp());
         let total: f64 = found.iter().map(|found| found.weight).sum();
         found.iter_mut().for_each(|found| found.weight /= total);
-        Ok(Metamers { search: self, color: colors[0], found })
+        Metamers { search: self.clone(), colors: colors.to_vec(), found }
     }
 }
 
@@ -196,22 +230,45 @@ fn expected_lights() -> Vec<Illuminant> {
 
 /// The materials that may have a color, with their probabilities.
 #[derive(Clone, Debug)]
-pub struct Metamers<'s> {
-    search: &'s MetamerSearch,
-    /// The color under the light of the contract.
-    color: Xyz,
+pub struct Metamers {
+    search: MetamerSearch,
+    /// One for each light of the search.
+    colors: Vec<Xyz>,
     /// The most probable first; their weights add up to 1.
     found: Vec<Found>,
 }
 
-impl Metamers<'_> {
+impl Metamers {
     /// The share that a band usually holds: nine of ten.
     pub const USUAL_SHARE: f64 = 0.9;
 
-    /// The probability that the paint fluoresces.
+    /// The probability that the paint fluoresces, as its colors tell. Where the kind of the paint was given, they
+    /// are searched again as if it were not.
     pub fn fluorescent_probability(&self) -> f64 {
+        if self.search.kind != PaintKind::Any {
+            let any = MetamerSearch { kind: PaintKind::Any, ..self.search.clone() };
+            return any.found(&self.colors).fluorescent_probability();
+        }
         let emitting = self.found.iter().filter(|found| found.does == Dyes::Emit);
-        emitting.map(|found| found.weight).sum()
+        // The sum of nothing would be -0.
+        emitting.fold(0.0, |sum, found| sum + found.weight)
+    }
+
+    /// A light to see them under: [`MetamerSearch::light`].
+    pub fn light(&self, light: &Illuminant) -> MetamerLight {
+        self.search.light(light)
+    }
+
+    /// The same for another observer.
+    pub(crate) fn light_for(&self, observer: &Observer, light: &Illuminant) -> MetamerLight {
+        let Among { model, contract, .. } = &*self.search.among;
+        let contract = Contract { observer: observer.clone(), ..contract.clone() };
+        MetamerLight::new(model, &contract, light)
+    }
+
+    /// [`MetamerSearch::missing_ultraviolet`].
+    pub fn missing_ultraviolet(&self, light: &Illuminant) -> Option<MissingUltraviolet> {
+        self.search.missing_ultraviolet(light)
     }
 
     /// The probability and the color of each material under a light.
@@ -243,7 +300,7 @@ impl Metamers<'_> {
     pub fn single(&self) -> Result<OwnMaterial, MetamerError> {
         let answers = self.found.len().min(MOST_ANSWERS);
         let mut errors = vec![0.0; answers];
-        for light in &self.search.expected {
+        for light in &self.search.among.expected {
             let labs = self.colors(light).into_iter();
             let labs: Vec<_> = labs.map(|(w, xyz)| (w, lab_from_xyz(xyz, light.white()))).collect();
             let error = |answer: usize| -> f64 {
@@ -263,7 +320,8 @@ impl Metamers<'_> {
     ///
     /// [`MetamerError`] if the dyes make no material.
     pub fn mixture(&self) -> Result<OwnMaterial, MetamerError> {
-        let lights = self.search.known.iter().chain(&self.search.expected);
+        let Among { known, expected, .. } = &*self.search.among;
+        let lights = known.iter().chain(expected);
         let answers = self.found.len().min(MOST_ANSWERS);
         let rows = lights.map(|light| {
             let colors = self.colors(light);
@@ -277,14 +335,14 @@ impl Metamers<'_> {
 
     /// A blend of materials by number.
     fn material(&self, parts: &[(usize, f64)]) -> Result<OwnMaterial, MetamerError> {
+        let Among { dyes: all, known, .. } = &*self.search.among;
         let part = |(place, &(number, weight)): (usize, &(usize, f64))| {
-            let home = Known::new(&self.search.known[0], self.color, true);
+            let home = Known::new(&known[0], self.colors[0], true);
             let Found { dyes, numbers, .. } = self.found[number].exact(&home);
             let [edge, level, slope, .., first_yield, second_yield] = numbers;
             let [a, b] = densities(&numbers);
             let name = (parts.len() > 1).then_some(place + 1);
-            let dye =
-                |k: usize, quantum_yield| fitted_dye(&self.search.dyes[k], quantum_yield, name);
+            let dye = |k: usize, quantum_yield| fitted_dye(&all[k], quantum_yield, name);
             let both = [(dye(dyes[0], first_yield), a), (dye(dyes[1], second_yield), b)];
             let dyes = if dyes[0] == dyes[1] { both[..1].to_vec() } else { both.to_vec() };
             FilmPart { weight, reflectance: edge_of([edge, level, slope], SLOPE_MAX_PER_NM), dyes }

@@ -5,7 +5,7 @@ use upglow::{
     Material, Mixture, Model, ModelError, ModelOnGrid, Node, QuantumYield,
 };
 use upglow_color::rounding::to_single;
-use upglow_color::{Contract, Grid, MeasuredDye, Metric};
+use upglow_color::{Contract, Grid, LinearRgb, MeasuredDye, Metric};
 
 /// A material, or a blend of up to four, with the model that it is of: films of dyes whose quantum yields are
 /// fitted. Its numbers are those that a cube stores.
@@ -104,26 +104,60 @@ impl OwnMaterial {
     ///
     /// [`CubeError`] if a number of the material is out of range.
     pub fn to_cube(&self, contract: &Contract, method: &str) -> Result<Cube, CubeError> {
-        let (_, material) =
-            self.parts.iter().max_by(|a, b| a.0.total_cmp(&b.0)).expect("there is at least one");
+        let heaviest = self.parts.iter().max_by(|a, b| a.0.total_cmp(&b.0));
+        let (_, material) = heaviest.expect("there is at least one");
+        self.cube_of([*material; 8], contract, method)
+    }
+
+    /// A cube of 2³ nodes with all parts, and the color that it blends them for, for all that asks cubes. The other
+    /// colors are blended otherwise: nothing is to be known from them.
+    ///
+    /// # Errors
+    ///
+    /// [`CubeError`] if a number of a material is out of range.
+    pub fn to_blending_cube(
+        &self,
+        contract: &Contract,
+        method: &str,
+    ) -> Result<(Cube, LinearRgb), CubeError> {
+        let nothing = (0.0, self.parts[0].1);
+        let part = |k: usize| self.parts.get(k).copied().unwrap_or(nothing);
+        let [(_, black), (red_weight, red), (yellow_weight, yellow), (white_weight, white)] =
+            [0, 1, 2, 3].map(part);
+        // Where blue ≤ green ≤ red, these four nodes are blended.
+        let nodes = [black, red, black, yellow, black, black, black, white];
+        let green = white_weight + yellow_weight;
+        // Weights add up to 1 but for rounding.
+        let rgb = LinearRgb([(green + red_weight).min(1.0), green.min(1.0), white_weight]);
+        Ok((self.cube_of(nodes, contract, method)?, rgb))
+    }
+
+    /// A cube of 2³ nodes.
+    fn cube_of(
+        &self,
+        materials: [Material; 8],
+        contract: &Contract,
+        method: &str,
+    ) -> Result<Cube, CubeError> {
         let colorimetry = contract.on(Grid::FIT);
-        let color = ModelOnGrid::new(&self.model, &colorimetry).color(*material);
-        let edge = material.reflectance.to_edge(crate::problem::parabola::MIDDLE_NM);
-        let node = Node::new(edge, material.fluorescence, 0.0);
+        let sums = ModelOnGrid::new(&self.model, &colorimetry);
+        let node = |material: Material| {
+            let edge = material.reflectance.to_edge(crate::problem::parabola::MIDDLE_NM);
+            Node::new(edge, material.fluorescence, 0.0)
+        };
         let fit = FitRecord {
             metric: Metric::De2000.to_string(),
             method: method.into(),
             ..FitRecord::default()
         };
         let (contract, model) = (contract.clone(), self.model.clone());
-        let cube = Cube::new(contract.clone(), model.clone(), fit.clone(), 2, vec![node; 8])?;
-        let nodes = (0..8)
-            .map(|index| {
-                let target = colorimetry.xyz_from_rgb(cube.node_rgb(index));
-                let de2000 = Metric::De2000.distance(&colorimetry, target, color);
-                Node { de2000: to_single(de2000), ..node }
-            })
-            .collect();
-        Cube::new(contract, model, fit, 2, nodes)
+        let nodes = materials.map(node);
+        let cube = Cube::new(contract.clone(), model.clone(), fit.clone(), 2, nodes.to_vec())?;
+        let measured = nodes.iter().zip(materials).enumerate().map(|(index, (node, material))| {
+            let target = colorimetry.xyz_from_rgb(cube.node_rgb(index));
+            let de2000 = Metric::De2000.distance(&colorimetry, target, sums.color(material));
+            Node { de2000: to_single(de2000), ..*node }
+        });
+        Cube::new(contract, model, fit, 2, measured.collect())
     }
 }

@@ -7,7 +7,7 @@ use upglow_color::{
     Observer, SeenUnder, Whiteness, WhitenessScale, Xyz, ciede2000,
 };
 
-use crate::metamers::{MetamerSearch, Metamers};
+use crate::metamers::Metamers;
 use crate::own_material::OwnMaterial;
 
 /// Materials of colors, to be seen under lights.
@@ -19,8 +19,8 @@ use crate::own_material::OwnMaterial;
 pub struct Relighting<'c> {
     contract: &'c Contract,
     source: Source<'c>,
-    /// For each color all materials that may have it, and the search that found them.
-    metamers: Option<(&'c MetamerSearch, Vec<Metamers<'c>>)>,
+    /// For each color all materials that may have it, all of one search; none where these were not searched.
+    metamers: Vec<Metamers>,
 }
 
 /// Where the materials come from.
@@ -80,18 +80,18 @@ impl<'c> Relighting<'c> {
 
     /// Materials with models of their own, that have their colors under the light of `contract`.
     pub fn of_own_materials(contract: &'c Contract, materials: Vec<OwnMaterial>) -> Self {
-        Self { contract, source: Source::Own(materials), metamers: None }
+        Self { contract, source: Source::Own(materials), metamers: Vec::new() }
     }
 
     fn of_blends(cube: &'c Cube, materials: Vec<Material>, blends: Vec<[(usize, f64); 4]>) -> Self {
         let source = Source::Cube { model: cube.model(), materials, blends };
-        Self { contract: cube.contract(), source, metamers: None }
+        Self { contract: cube.contract(), source, metamers: Vec::new() }
     }
 
-    /// The same with a band for each color: how far others are of all materials that may have it, which `search`
+    /// The same with a band for each color: how far others are of all materials that may have it, which one search
     /// found, in the order of the colors.
-    pub fn with_metamers(self, search: &'c MetamerSearch, metamers: Vec<Metamers<'c>>) -> Self {
-        Self { metamers: Some((search, metamers)), ..self }
+    pub fn with_metamers(self, metamers: Vec<Metamers>) -> Self {
+        Self { metamers, ..self }
     }
 
     /// A blend that the cube returned.
@@ -191,8 +191,9 @@ impl SeenBy<'_> {
         let colors = self.relighting.colors(&seen.colorimetry);
         let appearances = colors.into_par_iter().zip(&self.labs).map(appearance);
         let mut appearances: Vec<Appearance> = appearances.collect();
-        if let Some((search, metamers)) = &self.relighting.metamers {
-            let light = search.light_for(&self.contract.observer, light);
+        let metamers = &self.relighting.metamers;
+        if let Some(first) = metamers.first() {
+            let light = first.light_for(&self.contract.observer, light);
             appearances.par_iter_mut().zip(metamers).for_each(|(appearance, metamers)| {
                 let band = metamers.band(&light, appearance.xyz, Metamers::USUAL_SHARE);
                 appearance.band_de2000 = Some(band);

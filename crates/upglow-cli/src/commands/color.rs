@@ -7,8 +7,7 @@ use upglow_color::{
     ColorSolids, Colorimetry, Contract, Grid, Illuminant, LinearRgb, Metric, Screen, Xyz,
 };
 use upglow_fit::{
-    FitOptions, Fitter, MaterialKind, MetamerSearch, Metamers, OwnMaterial, PaintKind, Relighting,
-    View,
+    FitOptions, Fitter, MaterialKind, MetamerSearch, Metamers, OwnMaterial, Relighting, View,
 };
 use upglow_terminal::{Console, Failure};
 
@@ -64,16 +63,10 @@ fn run_search(
 ) -> Result<(), Failure> {
     let contract = cube.contract();
     let kind = args.paint.kind.unwrap_or_default();
-    let colors = metamers::colors(contract, rgb, known);
     let search = metamers::search(contract, known, kind)?;
-    let found = search.of(&colors).map_err(metamers::refused)?;
-    let probability = match kind {
-        PaintKind::Any => found.fluorescent_probability(),
-        _ => {
-            let any = metamers::search(contract, known, PaintKind::Any)?;
-            any.of(&colors).map_err(metamers::refused)?.fluorescent_probability()
-        }
-    };
+    let colors = std::iter::once(rgb).chain(known.iter().map(|known| known.rgb));
+    let found = search.of_rgb(&colors.collect::<Vec<_>>()).map_err(metamers::refused)?;
+    let probability = found.fluorescent_probability();
     let material = metamers::answer(&found, &args.paint)?;
     let mixture = material.mixture();
     if let Some(path) = &args.output {
@@ -81,23 +74,20 @@ fn run_search(
             Some(AnswerName::Mixture) => &found.single().map_err(metamers::refused)?,
             _ => &material,
         };
-        let cube = single.to_cube(contract, METHOD).map_err(no_material)?;
+        let cube = single.to_cube(contract, MetamerSearch::METHOD).map_err(no_material)?;
         cube.write(path).map_err(|error| Failure::file(path, error))?;
     }
     let seen = |under: &Colorimetry| mixture.color(&ModelOnGrid::new(mixture.model(), under));
     let report = PaintReport::new(contract, &args.paint, probability, known, seen);
-    let origin = Origin::Searched(Box::new(report), &material, &search, &found);
+    let origin = Origin::Searched(Box::new(report), &material, &found);
     Shown::new(cube, &mixture, rgb, origin, lights).finish(args, console)
 }
-
-/// What the record of a cube calls the way in which its material was found.
-const METHOD: &str = "metamers";
 
 /// Where a material comes from.
 enum Origin<'a> {
     LookedUp(Interpolation),
     Fitted,
-    Searched(Box<PaintReport>, &'a OwnMaterial, &'a MetamerSearch, &'a Metamers<'a>),
+    Searched(Box<PaintReport>, &'a OwnMaterial, &'a Metamers),
 }
 
 fn no_material(error: impl std::error::Error + Send + Sync + 'static) -> Failure {
@@ -196,10 +186,10 @@ impl<'a> Shown<'a> {
     fn lights(&self) -> Vec<LightReport> {
         let Contract { illuminant: own, observer, .. } = self.cube.contract();
         let relighting = match &self.origin {
-            Origin::Searched(_, material, search, metamers) => {
+            Origin::Searched(_, material, metamers) => {
                 let own = vec![OwnMaterial::clone(material)];
                 Relighting::of_own_materials(self.cube.contract(), own)
-                    .with_metamers(search, vec![Metamers::clone(metamers)])
+                    .with_metamers(vec![Metamers::clone(metamers)])
             }
             _ => Relighting::of_mixture(self.cube, self.mixture),
         };

@@ -29,9 +29,6 @@ pub(super) const MOST_SHOWN: usize = 64;
 const HEADER: &str = "name,r,g,b,light,observer,is_adapted,x,y,z,lab_l,lab_a,lab_b,\
                       r_under,g_under,b_under,de2000,fluorescent_share,whiteness,tint,band_de2000";
 
-/// Searches for all materials that may have a color take half a second each.
-const MOST_SEARCHED: usize = 1000;
-
 pub(crate) fn run(args: &RelightArgs, console: &Console) -> Result<(), Failure> {
     let is_search = args.paint.kind.is_some() || args.band;
     args.paint.check_answer(args.paint.kind.is_some(), "--kind")?;
@@ -57,9 +54,10 @@ pub(crate) fn run(args: &RelightArgs, console: &Console) -> Result<(), Failure> 
     }
     let colors = listed.unwrap_or_else(|| nodes(&cube));
     check_rows(colors.len(), lights.len(), observers.len())?;
-    if is_search && colors.len() > MOST_SEARCHED {
+    let most = MetamerSearch::MOST_IN_TURN;
+    if is_search && colors.len() > most {
         let message = format!(
-            "{} colors, expected at most {MOST_SEARCHED} with --kind or --band, which take half a second for each",
+            "{} colors, expected at most {most} with --kind or --band, which take half a second for each",
             colors.len()
         );
         return Err(Failure::Usage(message));
@@ -170,7 +168,7 @@ fn searched<'c>(
     cube: &'c Cube,
     colors: &[NamedColor],
     args: &RelightArgs,
-    search: &'c MetamerSearch,
+    search: &MetamerSearch,
     bar: &Bar,
 ) -> Result<Relighting<'c>, Failure> {
     let contract = cube.contract();
@@ -178,8 +176,7 @@ fn searched<'c>(
     for (done, color) in colors.iter().enumerate() {
         check_stopped()?;
         bar.progress(Progress { stage: "searching materials", done, total: colors.len() });
-        let known = metamers::colors(contract, color.rgb, &[]);
-        metamers.push(search.of(&known).map_err(metamers::refused)?);
+        metamers.push(search.of_rgb(&[color.rgb]).map_err(metamers::refused)?);
     }
     let answers = if args.paint.kind.is_some() {
         let answer = |found| metamers::answer(found, &args.paint);
@@ -188,7 +185,7 @@ fn searched<'c>(
     } else {
         relighting(cube, colors, args)?
     };
-    Ok(answers.with_metamers(search, metamers))
+    Ok(answers.with_metamers(metamers))
 }
 
 /// Each light for each observer.

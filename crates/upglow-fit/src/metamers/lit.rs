@@ -3,7 +3,7 @@
 use std::f64::consts::LN_10;
 
 use upglow::{Model, ModelOnGrid};
-use upglow_color::{Contract, Grid, Illuminant, Matrix3, Xyz};
+use upglow_color::{Contract, Grid, Illuminant, LinearRgb, Matrix3, SeenUnder, Xyz};
 
 use super::prior::{Numbers, SLOPE_MAX_PER_NM, UNKNOWNS, densities};
 use crate::problem::parabola::edge_chart;
@@ -15,7 +15,7 @@ pub struct MetamerLight {
     name: String,
     model: ModelOnGrid,
     sums: SingleSums,
-    white: Xyz,
+    seen: SeenUnder,
 }
 
 impl MetamerLight {
@@ -24,7 +24,7 @@ impl MetamerLight {
         let seen = contract.seen_under(light, Grid::FIT);
         let model = ModelOnGrid::new(model, &seen.colorimetry);
         let sums = SingleSums::new(&model);
-        Self { name: light.name().into(), model, sums, white: seen.white }
+        Self { name: light.name().into(), model, sums, seen }
     }
 
     /// Name of the light.
@@ -35,7 +35,12 @@ impl MetamerLight {
     /// What the observer sees as white: the perfect diffuser under the light, or under that of the contract if
     /// nobody could adapt to a light that is nearly invisible.
     pub fn white(&self) -> Xyz {
-        self.white
+        self.seen.white
+    }
+
+    /// The color that looks like this one under the light.
+    pub(super) fn xyz_from_rgb(&self, rgb: LinearRgb) -> Xyz {
+        self.seen.colorimetry.xyz_from_rgb(rgb)
     }
 
     pub(super) fn color(&self, dyes: [usize; 2], numbers: &Numbers) -> Xyz {

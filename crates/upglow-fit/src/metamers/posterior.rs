@@ -196,7 +196,7 @@ mod tests {
             MetamerSearch::new(&Contract::default(), &lights, PaintKind::Fluorescent).unwrap();
         let color = Xyz([0.4, 0.3, 0.1]);
         let known: Vec<Known<'_>> =
-            search.known.iter().map(|light| Known::new(light, color, false)).collect();
+            search.among.known.iter().map(|light| Known::new(light, color, false)).collect();
         for does in [Dyes::Absorb, Dyes::Emit] {
             let posterior = Posterior { known: &known, dyes: 28, does };
             let problem = MetamerProblem { posterior: &posterior, dyes: [3, 11] };

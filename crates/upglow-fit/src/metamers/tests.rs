@@ -161,3 +161,32 @@ fn the_wrong_number_of_colors_and_what_is_no_color_are_refused() {
     let wrong = refused(&[gray, Xyz([f64::NAN; 3])]);
     assert_eq!(wrong, "the color under A is [NaN, NaN, NaN] (XYZ), expected numbers up to 10");
 }
+
+#[test]
+fn a_cube_blends_the_parts_of_a_mixture_and_the_kind_does_not_change_the_probability() {
+    // Weights go through sums of each other.
+    const ROUNDING: f64 = 1e-12;
+    let contract = Contract::default();
+    let orange = LinearRgb(COLORS[3]);
+    let of_kind =
+        |kind| MetamerSearch::new(&contract, &[], kind).unwrap().of_rgb(&[orange]).unwrap();
+    let [any, fluorescent] = [PaintKind::Any, PaintKind::Fluorescent].map(of_kind);
+    assert_eq!(any.fluorescent_probability(), fluorescent.fluorescent_probability());
+    let colorimetry = contract.on(Grid::FIT);
+    let mixture = fluorescent.mixture().unwrap();
+    assert!(mixture.parts().len() > 1);
+    let (cube, rgb) = mixture.to_blending_cube(&contract, MetamerSearch::METHOD).unwrap();
+    let blend = cube.lookup(rgb, upglow::Interpolation::Blend).unwrap();
+    let own = mixture.mixture().color(&ModelOnGrid::new(mixture.model(), &colorimetry));
+    let found = blend.color(&ModelOnGrid::new(cube.model(), &colorimetry));
+    assert!((0..3).all(|k| (own.0[k] - found.0[k]).abs() < ROUNDING), "{own:?} {found:?}");
+    let weights = |parts: &mut dyn Iterator<Item = f64>| {
+        let mut weights: Vec<f64> = parts.filter(|weight| *weight > 0.0).collect();
+        weights.sort_by(f64::total_cmp);
+        weights
+    };
+    let ours = weights(&mut mixture.parts().iter().map(|part| part.0));
+    let theirs = weights(&mut blend.parts().map(|part| part.0));
+    assert_eq!(ours.len(), theirs.len());
+    assert!(ours.iter().zip(&theirs).all(|(one, two)| (one - two).abs() < ROUNDING));
+}

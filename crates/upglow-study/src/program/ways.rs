@@ -1,7 +1,6 @@
 //! Ways to make a material of what is known of a sample.
 
 use std::borrow::Cow;
-use std::sync::Arc;
 
 use upglow::{
     Accounting, DyeModel, DyeOptions, DyeSet, FilmModel, Fluorescence, Material, Mixing, Mixture,
@@ -181,14 +180,14 @@ fn options() -> Vec<OneColor> {
 #[derive(Debug)]
 pub(crate) struct AmongMetamers {
     name: String,
-    search: Arc<MetamerSearch>,
+    search: MetamerSearch,
     /// Lights under which colors are known, and the whites that they are relative to.
     told: Vec<(Illuminant, Xyz)>,
     answer: Answer,
 }
 
 /// A single material or a mixture.
-type Answer = fn(&Metamers<'_>) -> Result<OwnMaterial, MetamerError>;
+type Answer = fn(&Metamers) -> Result<OwnMaterial, MetamerError>;
 
 /// Paints of every kind by their colors under D65, and fluorescent paints by colors under other lights too: a photo
 /// without ultraviolet, or an ultraviolet lamp and incandescent light.
@@ -201,7 +200,6 @@ fn among_metamers() -> Vec<Box<dyn Way>> {
     let alone = PaintKind::ALL.iter().map(|kind| (*kind, Vec::new()));
     let search = |(kind, others): (PaintKind, Vec<Illuminant>)| {
         let search = MetamerSearch::new(&contract, &others, kind).expect(IN_RANGE);
-        let search = Arc::new(search);
         let also: String = others.iter().map(|light| format!(" + {}", light.name())).collect();
         let white = |light: &Illuminant| search.light(light).white();
         let lights = std::iter::once(&contract.illuminant).chain(&others);
