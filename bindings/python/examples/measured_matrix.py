@@ -178,8 +178,28 @@ else:
     print(f"greatest difference in XYZ: {np.abs(theirs / 100.0 - ours).max():.1e}")
 
 # %% [markdown]
-# ## Yours
+# ## A sample of which only colors are known
 #
-# This cell is free.
+# Few samples were ever in a bispectral instrument. Of others there is a color under D65, and perhaps another from
+# a photo through a filter that takes out ultraviolet: the difference of the two is what ultraviolet excites.
+# `metamers` finds the materials that may have these colors, and how probable each is. Here the sample is taken for one of
+# these, known to fluoresce; its matrix tells the truth under other lights. `ΔE00` is how far the best single material is
+# from that, `mixture` how far the best blend. `band` is within which nine of ten of the materials are
+# from the single one: that was known before the truth.
 
 # %%
+measured_xyz = upglow.Contract(space="xyz", adaptation="none")
+under_d65 = measured.color("D65")
+photo = {no_ultraviolet: measured.color(no_ultraviolet)}
+found = {
+    "D65": upglow.metamers(under_d65, measured_xyz, kind="fluorescent"),
+    "D65 and photo": upglow.metamers(under_d65, measured_xyz, kind="fluorescent", known=photo),
+}
+
+row("light, known", "Y meas.", "Y single", "ΔE00", "band", "mixture")
+for light in map(upglow.Illuminant, ["A", "E", "FL11", "LED-B3", lamp]):
+    for name, paint in found.items():
+        single = paint.single.difference(measured, light)
+        mixture = paint.mixture.difference(measured, light)
+        band = paint.band(light, "single")
+        row(f"{light.name}, {name}", single.measured[1], single.fitted[1], single.de2000, band, mixture.de2000)

@@ -101,11 +101,9 @@ impl Cube {
         self.cube.header_json()
     }
 
-    /// What is to say about its materials under a light, or its own.
-    #[pyo3(signature = (light=None))]
-    fn missing_ultraviolet(&self, light: Option<&Illuminant>) -> Option<String> {
-        let light = light.map_or(&self.cube.contract().illuminant, |light| &light.0);
-        self.cube.model().missing_ultraviolet(light).map(|missing| missing.to_string())
+    /// What is to say about its materials under a light.
+    fn missing_ultraviolet(&self, light: &Illuminant) -> Option<String> {
+        self.cube.model().missing_ultraviolet(&light.0).map(|missing| missing.to_string())
     }
 
     /// `reflectance`, `dyes`, `fluorescence` and `de2000` of every node, one per row.

@@ -18,6 +18,7 @@ mod fit;
 mod illuminant;
 mod materials;
 mod matrix;
+mod metamers;
 mod model;
 mod nodes;
 mod observer;
@@ -49,6 +50,7 @@ mod _upglow {
         illuminant::Illuminant,
         materials::{corners, polish},
         matrix::{DonaldsonMatrix, MatrixFit, fit_matrix},
+        metamers::{Metamers, matrix_like, metamers},
         model::{DyeSet, Model},
         observer::Observer,
         questions::answer,

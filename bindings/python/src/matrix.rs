@@ -18,6 +18,9 @@ use crate::word::Word;
 #[derive(Debug)]
 pub(crate) struct DonaldsonMatrix(pub(crate) upglow_color::DonaldsonMatrix);
 
+/// The measured color, the fitted one, ΔE00 and what noise may change of it, and whether the observer is adapted.
+type Difference = ([f64; 3], [f64; 3], f64, f64, bool);
+
 #[pymethods]
 impl DonaldsonMatrix {
     /// The matrix of these values, `[outgoing][incident]`, at these wavelengths, nm; and the reflectance
@@ -59,6 +62,18 @@ impl DonaldsonMatrix {
         self.0.color(&light.0, &observer.0).map(|color| color.0).map_err(value_error)
     }
 
+    /// How another matrix on the same axes looks beside this one under a light.
+    fn difference(&self, fitted: &Self, light: &Illuminant) -> PyResult<Difference> {
+        let found = MatrixDifference::of(&self.0, &fitted.0, &light.0).map_err(value_error)?;
+        let MatrixDifference { measured, fitted, de2000, noise_de2000, is_adapted, .. } = found;
+        Ok((measured.0, fitted.0, de2000, noise_de2000, is_adapted))
+    }
+
+    /// What is to say about it under a light.
+    fn missing_ultraviolet(&self, light: &Illuminant) -> Option<String> {
+        self.0.missing_ultraviolet(&light.0).map(|missing| missing.to_string())
+    }
+
     /// Where light arrives, nm.
     #[getter]
     fn incident_nm<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
@@ -97,9 +112,6 @@ impl DonaldsonMatrix {
 #[derive(Debug)]
 pub(crate) struct MatrixFit(upglow_fit::MatrixFit);
 
-/// The measured color, the fitted one, ΔE00 and what noise may change of it, and whether the observer is adapted.
-type Difference = ([f64; 3], [f64; 3], f64, f64, bool);
-
 #[pymethods]
 impl MatrixFit {
     /// The material on the axes of the measured matrix.
@@ -111,13 +123,6 @@ impl MatrixFit {
     /// A cube of nodes that are all the material.
     fn cube(&self) -> PyResult<Cube> {
         self.0.to_cube().map(Cube::of).map_err(value_error)
-    }
-
-    /// How the material looks beside the matrix under a light.
-    fn difference(&self, measured: &DonaldsonMatrix, light: &Illuminant) -> PyResult<Difference> {
-        let found = self.0.difference(&measured.0, &light.0).map_err(value_error)?;
-        let MatrixDifference { measured, fitted, de2000, noise_de2000, is_adapted, .. } = found;
-        Ok((measured.0, fitted.0, de2000, noise_de2000, is_adapted))
     }
 }
 

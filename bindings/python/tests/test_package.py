@@ -68,7 +68,7 @@ def test_the_package_says_that_it_is_typed() -> None:
 
 def test_signatures_and_representations_are_short() -> None:
     things = [getattr(upglow, name) for name in upglow.__all__]
-    functions = [upglow.build, upglow.standing, upglow.fit_matrix]
+    functions = [upglow.build, upglow.standing, upglow.fit_matrix, upglow.metamers]
     for owner in (thing for thing in things if inspect.isclass(thing)):
         functions += [f for f in vars(owner).values() if inspect.isfunction(f)]
     functions += [getattr(upglow.figures, name) for name in upglow.figures.__all__]
@@ -80,7 +80,9 @@ def test_signatures_and_representations_are_short() -> None:
     matrix = upglow.DonaldsonMatrix(nm, nm, 0.5 * np.eye(41), unit="per band")
     cube = upglow.build(model=upglow.Reflectance(), resolution=3)
     dye = upglow.Dye(name="x", absorption=(nm, nm), emission=(nm, nm))
+    paint = upglow.metamers([0.9, 0.3, 0.02])
     shown = [cube, cube.verify(points=5), cube.contract, cube.nodes, matrix, upglow.fit_matrix(matrix), dye]
+    shown += [paint, paint.mixture]
     for thing in (*shown, upglow.Illuminant("A"), upglow.Observer("cie-2015-2deg")):
         assert len(repr(thing)) < 140 and "\n" not in repr(thing), repr(thing)
     assert repr(cube.nodes[0]) == "Materials(reflectance, shape (3, 3))"
@@ -140,6 +142,7 @@ def test_the_measured_matrix_runs(tmp_path, monkeypatch, capsys, with_plots: boo
     assert all(de2000 < 1.0 for de2000 in fitted_de2000(told))
     whiteness = {line.split("  ")[0]: line.split()[-2] for line in told.splitlines()}
     assert float(whiteness["D65"]) > float(whiteness["D65 without UV"]) and whiteness["M1"] == "nan"
+    assert_colors_are_predicted(told)
     difference = re.search(r"greatest difference in XYZ: (\S+)", told)
     # Single precision here.
     assert difference is not None and float(difference[1]) < 1e-4
@@ -151,6 +154,7 @@ def test_the_measured_matrix_takes_a_file(tmp_path, monkeypatch, capsys) -> None
     file = str(BISPECTRAL / "TEXTYELL.BFC")
     told = run_the_measured_matrix(tmp_path, monkeypatch, capsys, [file])
     assert all(de2000 < 1.5 for de2000 in fitted_de2000(told))
+    assert_colors_are_predicted(told)
 
 
 def run_the_measured_matrix(tmp_path, monkeypatch, capsys, arguments: list[str]) -> str:
@@ -168,6 +172,17 @@ def fitted_de2000(told: str) -> list[float]:
     """ΔE00 of the material under each of the seven lights."""
     table = told[told.index("light  ") :].splitlines()[1:8]
     return [float(line.split()[-2]) for line in table]
+
+
+def assert_colors_are_predicted(told: str) -> None:
+    """Metamers of the colors of the matrix, under five lights, by one known color and by two."""
+    table = told[told.index("light, known") :].splitlines()[1:11]
+    numbers = np.array([line.split()[-5:] for line in table], dtype=float)
+    single, band, mixture = numbers[:, 2], numbers[:, 3], numbers[:, 4]
+    # Nine of ten is what a band promises.
+    assert np.sum(single <= band) >= 9
+    for de2000 in (single, mixture):
+        assert de2000[1::2].mean() < de2000[0::2].mean()
 
 
 def test_the_benchmark_runs(monkeypatch, capsys) -> None:

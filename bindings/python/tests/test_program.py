@@ -98,6 +98,42 @@ def test_both_relight_alike(program: str, file: Path) -> None:
             assert np.isnan(relit.whiteness[i, 0]) == (color["whiteness"] is None)
 
 
+@pytest.mark.parametrize("answer", ["single", "mixture"])
+@pytest.mark.parametrize("kind", ["any", "fluorescent"])
+def test_both_find_the_same_metamers(program: str, file: Path, tmp_path: Path, kind, answer) -> None:
+    rgb, a = [0.9, 0.3, 0.02], [0.8, 0.3, 0.05]
+    written = tmp_path / "paint.safetensors"
+    words = ["--kind", kind, "--answer", answer, "--output", str(written)]
+    words += ["--known", "A", *map(str, a), "--light", "A", "--light", "E"]
+    told = run(program, "color", str(file), *map(str, rgb), *words)
+    found = upglow.metamers(rgb, known={"A": a}, kind=kind)
+    assert found.fluorescent_probability == told["paint"]["fluorescent_probability"]
+    material = getattr(found, answer)
+    assert [light["name"] for light in told["lights"]] == ["D65", "A", "E"]
+    for light in told["lights"]:
+        seen = material.relight([light["name"]])
+        assert np.abs(seen.xyz[0] - light["xyz"]).max() < ROUNDING
+        assert abs(seen.fluorescent_share[0] - light["fluorescent_share"]) < ROUNDING
+        assert found.band(light["name"], light["xyz"]) == light["band_de2000"]
+    curves = told["curves"]
+    reflectance = material.reflectance(curves["wavelengths_nm"])
+    assert np.abs(reflectance - curves["reflectance"]).max() < ROUNDING
+    assert found.single.cube().to_bytes() == written.read_bytes()
+
+
+def test_both_show_the_same_band(program: str, file: Path) -> None:
+    rgb = [0.4, 0.2, 0.05]
+    told = run(program, "relight", str(file), *map(str, rgb), "--band", "--light", "D65", "--light", "A")
+    stages: list[tuple[str, int, int]] = []
+    relit = upglow.Cube.read(file).relight(
+        [rgb], ["D65", "A"], band=True, progress=lambda *stage: stages.append(stage)
+    )
+    bands = [view["colors"][0]["band_de2000"] for view in told["views"]]
+    assert relit.band_de2000[:, 0].tolist() == bands
+    assert stages == [("searching materials", 0, 1)]
+    assert np.isnan(upglow.Cube.read(file).relight(rgb, ["A"]).band_de2000).all()
+
+
 def test_both_fit_the_same_material(program: str, file: Path) -> None:
     cube = upglow.Cube.read(file)
     told = run(program, "color", str(file), "0.9", "0.1", "0.8", "--direct")

@@ -33,6 +33,7 @@ from ._cube import Cube, CubeCheck, CubeSummary, Relit, Samples, build
 from ._illuminant import Illuminant
 from ._materials import Corners, Materials
 from ._matrix import DonaldsonMatrix, MatrixDifference, MatrixFit, fit_matrix
+from ._metamers import MetamerColors, Metamers, OwnMaterial, metamers
 from ._models import Analytic, Dye, Dyes, Film, Reflectance
 from ._observer import Observer
 from ._standing import Kind, Standing, standing
@@ -59,7 +60,10 @@ __all__ = [
     "Materials",
     "MatrixDifference",
     "MatrixFit",
+    "MetamerColors",
+    "Metamers",
     "Observer",
+    "OwnMaterial",
     "Reflectance",
     "Relit",
     "Samples",
@@ -69,5 +73,6 @@ __all__ = [
     "build",
     "figures",
     "fit_matrix",
+    "metamers",
     "standing",
 ]

@@ -30,7 +30,7 @@ from ._arrays import (
 )
 from ._contract import Contract
 from ._html import table
-from ._illuminant import Illuminant
+from ._illuminant import Illuminant, warn_of_ultraviolet
 from ._kinds import instance, real, whole, wrong
 from ._materials import Corners, Materials, ModelName
 from ._models import Model
@@ -93,6 +93,9 @@ class Relit(NamedTuple):
     """Whiteness of the CIE, for whites under light like D65."""
     tint: NDArray[np.float64]
     """Tint of the CIE, where ``whiteness`` is defined."""
+    band_de2000: NDArray[np.float64]
+    """How far the color may be off: the CIEDE2000 within which nine of ten materials are that may have the color
+    under the contract's light, by their probabilities; with ``band=True``."""
     white: NDArray[np.float64]
     """XYZ of what the observer sees as white; shape (n, 3)."""
     is_adapted: NDArray[np.bool_]
@@ -199,12 +202,11 @@ def build(
     steeper = None if relaxed is None else instance("relaxed", relaxed, bool)
     tries = None if sweeps is None else whole("sweeps", sweeps)
     options = (preset, metric, slope_max, slope_under_dyes, steeper, method, tries)
-    agreed = Contract._or_default(contract)._native
+    agreed = Contract._or_default(contract)
     nodes = whole("resolution", resolution)
-    if missing := native.missing_ultraviolet(agreed.illuminant):
-        warnings.warn(missing, stacklevel=2)
+    warn_of_ultraviolet(native, agreed.illuminant)
     with reporting(progress) as report:
-        return Cube._of(_upglow.build(agreed, native, nodes, options, threads, report))
+        return Cube._of(_upglow.build(agreed._native, native, nodes, options, threads, report))
 
 
 def _limit(what: str, slope_per_nm: float | str | None) -> tuple[float | None] | None:
@@ -420,12 +422,16 @@ class Cube:
         lights: Sequence[Any],
         *,
         observer: Any = None,
+        band: bool = False,
         threads: Threads = None,
+        progress: bool | Report = False,
     ) -> Relit:
         """How colors look under lights, with all numbers of ``upglow relight``, in double precision.
 
         ``rgb`` is linear RGB of shape (..., 3), 0 to 1. Each of the n ``lights`` is an `Illuminant`, or what one
         is made from; ``observer`` is an `Observer` or what one is made from, the contract's by default.
+        ``band=True`` searches all materials that may have each color, as `upglow.metamers` does, half a second for
+        each of at most 1000, and says how far the answer may be off. Ctrl-C stops it.
         """
         array = rgb_array(rgb).astype(np.float64, copy=False)
         refuse_outside(array, to_fit=False)
@@ -433,15 +439,16 @@ class Cube:
             raise wrong("lights", lights, "a list of lights")
         made = [Illuminant(light) for light in lights]
         for light in made:
-            if missing := self._native.missing_ultraviolet(light._native):
-                warnings.warn(missing, stacklevel=2)
+            warn_of_ultraviolet(self._native, light)
         seer = self._contract.observer if observer is None else Observer(observer)
         natives = [light._native for light in made]
-        found, white, is_adapted = _upglow.relight(
-            self._native, rows(array), natives, seer._native, threads
-        )
+        searched = instance("band", band, bool)
+        with reporting(progress) as report:
+            found, white, is_adapted = _upglow.relight(
+                self._native, rows(array), natives, seer._native, searched, threads, report
+            )
         shape = (len(made), *array.shape[:-1])
-        told = found.reshape(*shape, 13)
+        told = found.reshape(*shape, 14)
         return Relit(
             xyz=told[..., 0:3],
             lab=told[..., 3:6],
@@ -450,6 +457,7 @@ class Cube:
             fluorescent_share=told[..., 10],
             whiteness=told[..., 11],
             tint=told[..., 12],
+            band_de2000=told[..., 13],
             white=white,
             is_adapted=is_adapted,
         )
@@ -471,8 +479,7 @@ class Cube:
         key = (illuminant, scale, step_nm)
         if key not in self._colors:
             native = None if illuminant is None else illuminant._native
-            if missing := self._native.missing_ultraviolet(native):
-                warnings.warn(missing, stacklevel=3)
+            warn_of_ultraviolet(self._native, illuminant or self._contract.illuminant)
             colors = _upglow.colors(self._native, native, scale, whole("step_nm", step_nm))
             while len(self._colors) >= _REMEMBERED_LIGHTS:
                 del self._colors[next(iter(self._colors))]
@@ -561,8 +568,7 @@ class Cube:
         wavelengths_nm = FIT_NM if wavelengths_nm is None else wavelengths_nm
         matrix = self.reradiation_matrix(of, wavelengths_nm, outside=outside, threads=threads)
         illuminant = self._contract.illuminant if light is None else Illuminant(light)
-        if missing := self._native.missing_ultraviolet(illuminant._native):
-            warnings.warn(missing, stacklevel=2)
+        warn_of_ultraviolet(self._native, illuminant)
         first, last, step = grid(wavelengths_nm)
         if first < 300 or last > 830:
             raise ValueError(f"wavelengths {first} to {last} nm, expected within 300 to 830 nm")

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import sys
+import warnings
 from functools import partial
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -119,3 +121,19 @@ class Illuminant(NamedTable):
 
     def __reduce__(self) -> tuple[Any, ...]:
         return partial(Illuminant, name=self.name, ends="zero"), (self._given(),)
+
+
+class _Lit(Protocol):
+    """What of the native half is seen under lights."""
+
+    def missing_ultraviolet(self, light: _upglow.Illuminant) -> str | None:
+        """What is to say about it under a light."""
+
+
+def warn_of_ultraviolet(seen: _Lit, light: Illuminant) -> None:
+    """Warns where the caller of this package is, if a dye absorbs ultraviolet that the light does not state."""
+    if missing := seen.missing_ultraviolet(light._native):
+        frame, depth = sys._getframe(1), 2
+        while frame.f_back and frame.f_globals.get("__name__", "").split(".")[0] == __package__:
+            frame, depth = frame.f_back, depth + 1
+        warnings.warn(missing, stacklevel=depth)

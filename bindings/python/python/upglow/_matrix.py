@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _upglow
 from ._arrays import numbers
 from ._cube import Cube
-from ._illuminant import Illuminant
+from ._illuminant import Illuminant, warn_of_ultraviolet
 from ._kinds import instance, whole
 from ._models import Dye, _native_set
 from ._observer import Observer
@@ -129,7 +129,17 @@ class DonaldsonMatrix:
 
         ``light`` and ``observer`` are an `Illuminant` and an `Observer`, or what these are made from.
         """
-        return np.array(self._native.color(Illuminant(light)._native, Observer(observer)._native))
+        illuminant, seer = Illuminant(light), Observer(observer)
+        warn_of_ultraviolet(self._native, illuminant)
+        return np.array(self._native.color(illuminant._native, seer._native))
+
+    def _difference(self, fitted: _upglow.DonaldsonMatrix, light: Any) -> MatrixDifference:
+        """How a material looks beside this matrix, on the axes of which it is."""
+        illuminant = Illuminant(light)
+        warn_of_ultraviolet(self._native, illuminant)
+        found = self._native.difference(fitted, illuminant._native)
+        own, other, de2000, noise, is_adapted = found
+        return MatrixDifference(np.array(own), np.array(other), de2000, noise, is_adapted)
 
 
 class MatrixDifference(NamedTuple):
@@ -175,9 +185,7 @@ class MatrixFit:
 
     def difference(self, light: Any = "D65") -> MatrixDifference:
         """How the material looks beside the measured matrix under a light."""
-        found = self._native.difference(self._measured._native, Illuminant(light)._native)
-        measured, fitted, de2000, noise, is_adapted = found
-        return MatrixDifference(np.array(measured), np.array(fitted), de2000, noise, is_adapted)
+        return self._measured._difference(self._native.matrix, light)
 
 
 def fit_matrix(
