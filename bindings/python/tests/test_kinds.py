@@ -63,7 +63,7 @@ def matrix(**changes: Any) -> upglow.DonaldsonMatrix:
         (lambda: upglow.metamers(GRAY, "srgb"), "contract is str, expected a Contract"),
         (lambda: upglow.metamers(GRAY, known="A"), "known is str, expected {light: rgb} or a list"),
         (lambda: upglow.metamers(GRAY, known=["A"]), "known[0] is str, expected a pair (light, rgb)"),
-        (lambda: upglow.metamers(GRAY, known={"A": "abc"}), "the color under A has dtype <U3, expec"),
+        (lambda: upglow.metamers(GRAY, known={"A": "abc"}), "the color under A has dtype <U3, expected n"),
         (lambda: upglow.metamers(GRAY, kind=1), "kind of paint is int, expected any, ordinary or"),
         (lambda: upglow.metamers(GRAY, dyes=3), "the set of dyes is int, expected a name, a folder"),
         (lambda: CUBE.reflectance(GRAY, None), "wavelengths_nm is NoneType, expected numbers"),
