@@ -93,6 +93,8 @@ pub(crate) struct KnownReport {
     pub(crate) light: String,
     pub(crate) rgb: LinearRgb,
     pub(crate) de2000: f64,
+    /// What is to say where its ultraviolet is not known.
+    pub(crate) missing_ultraviolet: Option<String>,
 }
 
 impl PaintReport {
@@ -102,6 +104,7 @@ impl PaintReport {
         args: &PaintArgs,
         fluorescent_probability: f64,
         known: &[KnownColor],
+        missing_ultraviolet: impl Fn(&Illuminant) -> Option<String>,
         seen: impl Fn(&Colorimetry) -> Xyz,
     ) -> Self {
         let known = known.iter().map(|KnownColor { light, rgb }| {
@@ -109,7 +112,8 @@ impl PaintReport {
             let target = under.colorimetry.xyz_from_rgb(*rgb);
             let lab = |xyz| lab_from_xyz(xyz, under.white);
             let de2000 = ciede2000(lab(target), lab(seen(&under.colorimetry)));
-            KnownReport { light: light.name().into(), rgb: *rgb, de2000 }
+            let missing_ultraviolet = missing_ultraviolet(light);
+            KnownReport { light: light.name().into(), rgb: *rgb, de2000, missing_ultraviolet }
         });
         Self {
             kind: args.kind.unwrap_or_default(),

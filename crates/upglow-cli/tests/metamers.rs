@@ -95,6 +95,24 @@ fn relight_takes_kinds_and_shows_bands() {
 }
 
 #[test]
+fn a_known_color_under_a_light_of_unknown_ultraviolet_is_told_once() {
+    let folder = folder_with_cube();
+    let known = "--json color cube 0.9 0.3 0.02 --known FL2 0.8 0.3 0.05 --light A";
+    for command in [known.to_owned(), format!("{known} --light FL2")] {
+        let told = folder.run(&command);
+        assert_eq!(
+            told.stderr.matches("FL2 is given from 380 nm on").count(),
+            1,
+            "{}",
+            told.stderr
+        );
+        let json: Value = serde_json::from_str(&told.stdout).unwrap();
+        let known = &json["paint"]["known"][0];
+        assert!(known["missing_ultraviolet"].is_string(), "{known}");
+    }
+}
+
+#[test]
 fn faults_are_named_in_one_line() {
     let folder = folder_with_cube();
     let color = "color cube 0.5 0.4 0.3";

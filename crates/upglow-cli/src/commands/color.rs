@@ -78,7 +78,13 @@ fn run_search(
         cube.write(path).map_err(|error| Failure::file(path, error))?;
     }
     let seen = |under: &Colorimetry| mixture.color(&ModelOnGrid::new(mixture.model(), under));
-    let report = PaintReport::new(contract, &args.paint, probability, known, seen);
+    let missing = |light: &Illuminant| {
+        let missing = search.missing_ultraviolet(light);
+        // Of lights that are shown the report says it.
+        let is_shown = lights.iter().any(|shown| shown.name() == light.name());
+        if is_shown { missing.map(|m| m.to_string()) } else { warn_of_ultraviolet(missing) }
+    };
+    let report = PaintReport::new(contract, &args.paint, probability, known, missing, seen);
     let origin = Origin::Searched(Box::new(report), &material, &found);
     Shown::new(cube, &mixture, rgb, origin, lights).finish(args, console)
 }

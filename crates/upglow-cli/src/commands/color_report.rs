@@ -218,7 +218,7 @@ impl ColorReport<'_> {
             .add("kind", self.kind_text())
             .add("ΔE00", format_args!("{:.4}{remark}", self.de2000));
         if let Some(paint) = self.paint {
-            for KnownReport { light, rgb: LinearRgb([r, g, b]), de2000 } in &paint.known {
+            for KnownReport { light, rgb: LinearRgb([r, g, b]), de2000, .. } in &paint.known {
                 lines.add("known", format_args!("{light} ({r}, {g}, {b}), ΔE00 {de2000:.2}"));
             }
             lines.add("fluoresces", paint.fluoresces());
