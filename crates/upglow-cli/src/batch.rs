@@ -1,13 +1,12 @@
 //! Work on pictures one after the other, where a bad one does not end the work on the rest.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use upglow_image::Interpretation;
 use upglow_terminal::{Console, Failure, Report};
 
 use crate::output::{Lines, failed};
-use crate::pictures::Inputs;
 
 /// What became of the pictures of a command. It is the one document of `--json`.
 #[derive(Debug, Serialize)]
@@ -40,9 +39,9 @@ struct FailedPicture {
 }
 
 impl<R: Report + Interpreted> Batch<R> {
-    pub(crate) fn new(verb: &'static str, inputs: &Inputs) -> Self {
-        let left_out = inputs.left_out.iter().map(|path| path.display().to_string()).collect();
-        let total = inputs.pictures.len();
+    /// No picture of `total`; the given folders hold these others.
+    pub(crate) fn new(verb: &'static str, total: usize, left_out: &[PathBuf]) -> Self {
+        let left_out = left_out.iter().map(|path| path.display().to_string()).collect();
         Self {
             verb,
             total,

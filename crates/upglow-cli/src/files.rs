@@ -1,10 +1,12 @@
 //! Reading cubes, and checking that no output replaces an input.
 
-use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use upglow::{Cube, CubeFileError};
+use upglow_image::Hash;
 use upglow_terminal::Failure;
+
+use crate::pictures::RealPictures;
 
 pub(crate) use upglow_terminal::files::{
     check_ending, check_output, make_folder, read_text, write,
@@ -29,31 +31,40 @@ pub(crate) fn read_cube(path: &Path) -> Result<Cube, Failure> {
     })
 }
 
+/// The hash of a file.
+pub(crate) fn hash(path: &Path) -> Result<Hash, Failure> {
+    Hash::of_file(path).map_err(|error| Failure::system(path, &error, "a file to read"))
+}
+
 /// The size of a file.
 pub(crate) fn bytes(path: &Path) -> Result<u64, Failure> {
     path.metadata().map(|found| found.len()).map_err(|error| Failure::system(path, &error, A_CUBE))
 }
 
-/// The input pictures by the paths that they really have.
-pub(crate) fn really(pictures: &[PathBuf]) -> HashMap<PathBuf, &PathBuf> {
-    let pairs = pictures.iter().filter_map(|path| Some((path.canonicalize().ok()?, path)));
-    pairs.collect()
-}
-
-/// Checks that an output can be written, and does not replace the cube or an input picture.
-pub(crate) fn check_output_of(
+/// Checks that an output replaces neither the cube nor an input picture.
+pub(crate) fn check_no_input(
     output: &Path,
     cube: Option<&Path>,
-    pictures: &HashMap<PathBuf, &PathBuf>,
+    pictures: &RealPictures<'_>,
 ) -> Result<(), Failure> {
-    let real = output.canonicalize().ok();
-    if let Some(picture) = real.and_then(|real| pictures.get(&real)) {
+    let Ok(real) = output.canonicalize() else { return Ok(()) };
+    if let Some(picture) = pictures.at(&real) {
         let message = format!("the picture {} itself, expected another file", picture.display());
         return Err(Failure::file(output, message));
     }
     if cube.is_some_and(|cube| is_same(cube, output)) {
         return Err(Failure::file(output, "the cube itself, expected another file to write"));
     }
+    Ok(())
+}
+
+/// Checks that an output can be written, and does not replace the cube or an input picture.
+pub(crate) fn check_output_of(
+    output: &Path,
+    cube: Option<&Path>,
+    pictures: &RealPictures<'_>,
+) -> Result<(), Failure> {
+    check_no_input(output, cube, pictures)?;
     check_output(output)
 }
 

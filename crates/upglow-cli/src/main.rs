@@ -7,6 +7,7 @@ mod args;
 mod batch;
 mod color_list;
 mod commands;
+mod farm;
 mod files;
 mod metamers;
 mod name_pattern;

@@ -1,8 +1,10 @@
 //! The pictures that a command reads, and the files that it writes for them.
 
-use std::collections::HashMap;
-use std::ffi::OsStr;
+use std::collections::{HashMap, HashSet};
+use std::ffi::{OsStr, OsString};
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, OnceLock};
 
 use upglow_image::SUFFIXES;
 use upglow_terminal::Failure;
@@ -19,14 +21,22 @@ pub(crate) struct Inputs {
     pub(crate) left_out: Vec<PathBuf>,
 }
 
-/// A picture of a command.
+/// A picture of a command. A million of them take some 100 MB, because those of a folder share its name.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Input {
-    pub(crate) path: PathBuf,
-    /// The folder of the picture inside the given one.
-    subfolder: PathBuf,
+    folder: Arc<Folder>,
+    /// The name in the folder.
+    name: OsString,
     /// The number that a word in the given name replaces.
-    number: Option<String>,
+    number: Option<Box<str>>,
+}
+
+/// A folder with pictures of a command.
+#[derive(Debug, Default, PartialEq, Eq)]
+struct Folder {
+    path: PathBuf,
+    /// The same folder inside the given one.
+    inside: PathBuf,
 }
 
 /// Whether the subfolders of a folder are searched too.
@@ -38,14 +48,20 @@ pub(crate) enum Depth {
 
 impl From<PathBuf> for Input {
     fn from(path: PathBuf) -> Self {
-        Self { path, ..Self::default() }
+        let folder = Folder { path, inside: PathBuf::new() };
+        Self { folder: folder.into(), ..Self::default() }
     }
 }
 
-impl Inputs {
-    /// The files of the pictures.
-    pub(crate) fn paths(&self) -> Vec<PathBuf> {
-        self.pictures.iter().map(|input| input.path.clone()).collect()
+impl Input {
+    /// The path of the picture.
+    pub(crate) fn path(&self) -> PathBuf {
+        // Joining an empty name would add a separator.
+        if self.name.as_os_str().is_empty() {
+            self.folder.path.clone()
+        } else {
+            self.folder.path.join(&self.name)
+        }
     }
 }
 
@@ -70,7 +86,10 @@ pub(crate) fn find(inputs: &[PathBuf], depth: Depth) -> Result<Inputs, Failure> 
         match pattern {
             None => found.pictures.push(input.clone().into()),
             Some(pattern) => {
-                let tile = |(number, path)| Input { number: Some(number), ..Input::from(path) };
+                let tile = |(number, path): (String, PathBuf)| Input {
+                    number: Some(number.into()),
+                    ..Input::from(path)
+                };
                 found.pictures.extend(pattern.files()?.into_iter().map(tile));
             }
         }
@@ -90,39 +109,32 @@ pub(crate) fn check_there(path: &Path, expected: &str) -> Result<(), Failure> {
 }
 
 /// Adds the pictures of a folder, or of one inside it.
-fn add_folder(
-    folder: &Path,
-    subfolder: &Path,
-    depth: Depth,
-    to: &mut Inputs,
-) -> Result<(), Failure> {
-    let here = folder.join(subfolder);
-    let unread = |error| Failure::system(&here, &error, "a folder of pictures");
+fn add_folder(folder: &Path, inside: &Path, depth: Depth, to: &mut Inputs) -> Result<(), Failure> {
+    let here = Arc::new(Folder { path: folder.join(inside), inside: inside.to_owned() });
+    let unread = |error| Failure::system(&here.path, &error, "a folder of pictures");
     let mut entries = Vec::new();
-    for entry in here.read_dir().map_err(unread)? {
+    for entry in here.path.read_dir().map_err(unread)? {
         let entry = entry.map_err(unread)?;
         // A link to a folder is not followed: it may lead back.
-        entries.push((entry.path(), entry.file_type().map_err(unread)?.is_dir()));
+        entries.push((entry.file_name(), entry.file_type().map_err(unread)?.is_dir()));
     }
-    entries.retain(|(path, _)| !is_hidden(path));
+    entries.retain(|(name, _)| !is_hidden(name));
     entries.sort();
-    for (path, is_folder) in entries {
+    for (name, is_folder) in entries {
         if is_folder && depth == Depth::Subfolders {
-            let inner = subfolder.join(path.file_name().unwrap_or_default());
-            add_folder(folder, &inner, depth, to)?;
-        } else if !path.is_dir() && is_picture(&path) {
-            let subfolder = subfolder.to_owned();
-            to.pictures.push(Input { path, subfolder, number: None });
+            add_folder(folder, &inside.join(name), depth, to)?;
+        } else if is_picture(Path::new(&name)) && !here.path.join(&name).is_dir() {
+            to.pictures.push(Input { folder: Arc::clone(&here), name, number: None });
         } else {
-            to.left_out.push(path);
+            to.left_out.push(here.path.join(name));
         }
     }
     Ok(())
 }
 
 /// Whether a file is hidden, as the `._x` that some systems write beside each x.
-fn is_hidden(path: &Path) -> bool {
-    path.file_name().is_some_and(|name| name.as_encoded_bytes().starts_with(b"."))
+fn is_hidden(name: &OsStr) -> bool {
+    name.as_encoded_bytes().starts_with(b".")
 }
 
 fn is_picture(path: &Path) -> bool {
@@ -151,12 +163,22 @@ pub(crate) struct Outputs<'a> {
     pub(crate) variants: &'a [String],
 }
 
-impl Outputs<'_> {
+/// The names of the files of each picture, no two of which are the same.
+#[derive(Clone, Debug)]
+pub(crate) struct Named<'a> {
+    outputs: Outputs<'a>,
+    /// Whether the path is that of a file.
+    is_file: bool,
+    /// The word for numbers in the path.
+    pattern: Option<NamePattern>,
+}
+
+impl<'a> Outputs<'a> {
     /// The files of each input: `path`, if it ends in a suffix of files and is not a folder, for a
     /// single picture or with a word for the numbers of all; otherwise files in the folder `path`, in the
     /// subfolder of the picture and named after it and the form, with the tile number of a UDIM in its
     /// place.
-    pub(crate) fn of(&self, inputs: &[Input]) -> Result<Vec<Vec<PathBuf>>, Failure> {
+    pub(crate) fn of(self, inputs: &[Input]) -> Result<Named<'a>, Failure> {
         let is_file = is_named_as_file(self.path) && !self.path.is_dir();
         let pattern = if is_file { NamePattern::of(self.path)? } else { None };
         if is_file {
@@ -169,39 +191,97 @@ impl Outputs<'_> {
             );
             return Err(Failure::file(self.path, message));
         }
-        let mut outputs = Vec::new();
-        let mut taken: HashMap<PathBuf, &PathBuf> = HashMap::new();
-        for input in inputs {
-            let output = match &pattern {
-                Some(pattern) => {
-                    let number = input.number.as_ref().ok_or_else(|| {
-                        let word = pattern.word();
-                        let message = format!("no number for {word}, expected inputs with {word}");
-                        Failure::file(self.path, message)
-                    })?;
-                    pattern.with(number)
-                }
-                None if is_file => self.path.to_owned(),
-                None => {
-                    let folder = self.path.join(&input.subfolder);
-                    folder.join(name_of(&input.path, self.form, self.ending))
-                }
-            };
-            let files = self.variants_of(&output);
-            for path in &files {
-                if let Some(twin) = taken.insert(path.clone(), &input.path) {
-                    let twin = twin.display();
-                    let message = format!(
-                        "same name as {twin}, expected names that differ without their suffixes"
-                    );
-                    return Err(Failure::file(&input.path, message));
-                }
+        let named = Named { outputs: self, is_file, pattern };
+        named.refuse_twins(inputs)?;
+        Ok(named)
+    }
+}
+
+impl Named<'_> {
+    /// The files of a picture.
+    pub(crate) fn files(&self, input: &Input) -> Result<Vec<PathBuf>, Failure> {
+        let outputs = &self.outputs;
+        let output = match &self.pattern {
+            Some(pattern) => {
+                let number = input.number.as_ref().ok_or_else(|| {
+                    let word = pattern.word();
+                    let message = format!("no number for {word}, expected inputs with {word}");
+                    Failure::file(outputs.path, message)
+                })?;
+                pattern.with(number)
             }
-            outputs.push(files);
-        }
-        Ok(outputs)
+            None if self.is_file => outputs.path.to_owned(),
+            None => {
+                let folder = outputs.path.join(&input.folder.inside);
+                folder.join(name_of(&input.path(), outputs.form, outputs.ending))
+            }
+        };
+        Ok(outputs.variants_of(&output))
     }
 
+    /// Only hashes of the names are kept, since there may be millions; where two are the same, all are gone
+    /// through for the twin.
+    fn refuse_twins(&self, inputs: &[Input]) -> Result<(), Failure> {
+        let mut taken = HashSet::new();
+        for (i, input) in inputs.iter().enumerate() {
+            let files = self.files(input)?;
+            // Not `all`, which would stop at the first.
+            let fresh = files.iter().filter(|path| taken.insert(hash_of(path))).count();
+            if fresh == files.len() {
+                continue;
+            }
+            if files.iter().enumerate().any(|(j, path)| files[..j].contains(path)) {
+                return Err(twins(input, input));
+            }
+            for twin in &inputs[..i] {
+                if self.files(twin)?.iter().any(|path| files.contains(path)) {
+                    return Err(twins(input, twin));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+fn twins(input: &Input, twin: &Input) -> Failure {
+    let twin = twin.path();
+    let twin = twin.display();
+    let message = format!("same name as {twin}, expected names that differ without their suffixes");
+    Failure::file(&input.path(), message)
+}
+
+/// The pictures of a command by the paths that they really have, of which only hashes are kept, and only if one
+/// is asked for.
+#[derive(Debug, Default)]
+pub(crate) struct RealPictures<'a> {
+    inputs: &'a [Input],
+    numbers: OnceLock<HashMap<u64, usize>>,
+}
+
+impl<'a> RealPictures<'a> {
+    pub(crate) fn new(inputs: &'a [Input]) -> Self {
+        Self { inputs, numbers: OnceLock::new() }
+    }
+
+    /// The picture that has this path.
+    pub(crate) fn at(&self, real: &Path) -> Option<PathBuf> {
+        let numbers = self.numbers.get_or_init(|| {
+            let real = self.inputs.iter().map(|input| input.path().canonicalize().ok());
+            real.enumerate().filter_map(|(i, path)| Some((hash_of(&path?), i))).collect()
+        });
+        let path = self.inputs[*numbers.get(&hash_of(real))?].path();
+        (path.canonicalize().ok()? == real).then_some(path)
+    }
+}
+
+/// Not the same for other builds of the program.
+fn hash_of(path: &Path) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    path.hash(&mut hasher);
+    hasher.finish()
+}
+
+impl Outputs<'_> {
     /// `wall.png` becomes `wall.A.png` and `wall.D65.png`.
     fn variants_of(&self, path: &Path) -> Vec<PathBuf> {
         if self.variants.is_empty() {
@@ -246,7 +326,9 @@ mod tests {
         };
         let (one, two) = (inputs(&["a.png"]), inputs(&["a.png", "b.png"]));
         let to = |path, form, inputs: &[Input]| {
-            Outputs { path: Path::new(path), form, ending: "exr", variants: &[] }.of(inputs)
+            let to = Outputs { path: Path::new(path), form, ending: "exr", variants: &[] };
+            let named = to.of(inputs)?;
+            inputs.iter().map(|input| named.files(input)).collect::<Result<Vec<_>, Failure>>()
         };
         assert_eq!(to("out.exr", "material", &one), Ok(vec![vec![PathBuf::from("out.exr")]]));
         assert!(to("out.exr", "material", &two).is_err());
@@ -267,7 +349,8 @@ mod tests {
                 ending: "png",
                 variants: &lights,
             };
-            let files = outputs.of(&[PathBuf::from(input).into()]).unwrap().concat();
+            let input = Input::from(PathBuf::from(input));
+            let files = outputs.of(std::slice::from_ref(&input)).unwrap().files(&input).unwrap();
             files.iter().map(|path| path.display().to_string()).collect::<Vec<_>>()
         };
         assert_eq!(names("x.png", "a.exr"), ["x.A.png", "x.D65.png"]);
@@ -294,9 +377,11 @@ mod tests {
                 paths.iter().map(name).collect()
             };
             let to = Outputs { path: Path::new("o"), form: "f", ending: "exr", variants: &[] };
-            let outputs = to.of(&found.pictures).unwrap().concat();
-            let outputs: Vec<String> = outputs.iter().map(|p| p.display().to_string()).collect();
-            (inside(&found.paths()), inside(&found.left_out), outputs)
+            let named = to.of(&found.pictures).unwrap();
+            let outputs = found.pictures.iter().flat_map(|input| named.files(input).unwrap());
+            let outputs: Vec<String> = outputs.map(|path| path.display().to_string()).collect();
+            let pictures: Vec<PathBuf> = found.pictures.iter().map(Input::path).collect();
+            (inside(&pictures), inside(&found.left_out), outputs)
         };
         let (pictures, left_out, _) = find(Depth::Folder);
         assert_eq!(
@@ -321,7 +406,10 @@ mod tests {
         let find = |name: &str| find(&[folder.path().join(name)], Depth::Folder);
         let tiles = find("a.<UDIM>.png").unwrap();
         let to = |path| Outputs { path: Path::new(path), form: "f", ending: "exr", variants: &[] };
-        let names = |path| to(path).of(&tiles.pictures).map(|files| files.concat());
+        let names = |path| -> Result<Vec<PathBuf>, Failure> {
+            let named = to(path).of(&tiles.pictures)?;
+            tiles.pictures.iter().map(|tile| Ok(named.files(tile)?.remove(0))).collect()
+        };
         let named = ["o/x_1001.exr", "o/x_1002.exr"].map(PathBuf::from);
         assert_eq!(names("o/x_<UDIM>.exr"), Ok(named.to_vec()));
         let in_folder = ["o/a.f.1001.exr", "o/a.f.1002.exr"].map(PathBuf::from);

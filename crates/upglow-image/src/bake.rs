@@ -4,6 +4,7 @@ mod attributes;
 mod blends;
 mod compact;
 mod half_reflectance;
+pub(crate) mod hash;
 mod levels;
 mod maker;
 mod material;
@@ -15,18 +16,17 @@ pub(crate) mod repair;
 mod screen;
 mod spectral;
 
-use std::fs::File;
-use std::io::{self, Read};
+use std::io;
 use std::path::Path;
 
 use rayon::prelude::*;
-use sha2::{Digest, Sha256};
 use upglow::{Cube, LookupError};
 use upglow_color::rounding::to_single;
 use upglow_color::{Grid, Illuminant, LinearRgb};
 use upglow_fit::{FitOptionsError, KindCounts, StandingTable, Stopped, Watch};
 
 use self::compact::CompactMaker;
+use self::hash::Hash;
 use self::levels::{LevelRows, Levels};
 use self::maker::{Filled, Maker};
 use self::material::MaterialMaker;
@@ -210,8 +210,7 @@ pub struct Baker<'c> {
     png: Option<PngBits>,
     /// Names of the channels in the order of the planes, without alpha, which comes last.
     channels: Vec<String>,
-    /// A hash of the program's version, the cube, the form and the options.
-    made: Sha256,
+    hash: Hash,
 }
 
 /// Most bytes of the channels of a band, which limits the rows of wide pictures with many channels.
@@ -229,9 +228,8 @@ impl<'c> Baker<'c> {
     ///
     /// [`BakeError`] if the cube does not support the form.
     pub fn new(cube: &'c Cube, form: Form, options: BakeOptions) -> Result<Self, BakeError> {
-        let mut made = Sha256::new();
-        made.update(format!("{} {form:?} {options:?}", env!("CARGO_PKG_VERSION")));
-        made.update(Sha256::digest(cube.to_bytes()));
+        let (version, cube_hash) = (env!("CARGO_PKG_VERSION"), Hash::of(&cube.to_bytes()));
+        let hash = Hash::of(format!("{version} {form:?} {options:?} {cube_hash}").as_bytes());
         let is_polished = form == Form::Material;
         let png = match form {
             Form::Screen { bits, .. } => Some(bits),
@@ -249,7 +247,7 @@ impl<'c> Baker<'c> {
             }
         };
         let channels = maker.channels();
-        Ok(Self { cube, options, maker, png, channels, made })
+        Ok(Self { cube, options, maker, png, channels, hash })
     }
 
     /// Bakes the picture at `input` into a file at `output`, on all threads of the current rayon
@@ -280,7 +278,7 @@ impl<'c> Baker<'c> {
             _ => None,
         };
         let made = self.made_from(input).map_err(PictureError::Io)?;
-        let mut writer = self.create(output.as_ref(), picture.picture(), made)?;
+        let mut writer = self.create(output.as_ref(), picture.picture(), &made)?;
         let mut baked = Baked {
             size,
             interpretation: picture.interpretation().clone(),
@@ -304,26 +302,30 @@ impl<'c> Baker<'c> {
         Ok(baked)
     }
 
+    /// A hash of the version of this library, the cube, the form and the options.
+    pub fn hash(&self) -> &Hash {
+        &self.hash
+    }
+
     /// Whether the file at `output` was baked from the picture at `input` with the same cube, form and
     /// options, by the same version of this library.
     pub fn is_made(&self, input: impl AsRef<Path>, output: impl AsRef<Path>) -> bool {
-        let stated = output::made(output.as_ref());
+        let stated = Hash::stated(output);
         stated.is_some_and(|stated| self.made_from(input.as_ref()).is_ok_and(|made| made == stated))
     }
 
     /// A hash of everything that makes the file of a picture.
-    fn made_from(&self, input: &Path) -> io::Result<String> {
-        /// Bytes that are read at a time.
-        const PIECE: usize = 1 << 16;
-        let (mut file, mut piece) = (File::open(input)?, vec![0; PIECE]);
-        let mut made = self.made.clone();
-        loop {
-            match file.read(&mut piece)? {
-                0 => break,
-                count => made.update(&piece[..count]),
-            }
-        }
-        Ok(made.finalize().iter().map(|byte| format!("{byte:02x}")).collect())
+    fn made_from(&self, input: &Path) -> io::Result<Hash> {
+        Ok(self.hash.with_picture(&Hash::of_file(input)?))
+    }
+
+    /// Width and height of the picture at `input`.
+    ///
+    /// # Errors
+    ///
+    /// [`PictureError`] if it is no picture, or its RGB space or encoding is unknown; its texels are not read.
+    pub fn size(&self, input: impl AsRef<Path>) -> Result<[usize; 2], PictureError> {
+        Ok(LinearPicture::open(input.as_ref(), &self.options.declared)?.picture().size())
     }
 
     /// A picture that is converted to the cube's RGB space.
@@ -430,13 +432,14 @@ impl<'c> Baker<'c> {
     }
 
     /// Starts the file of a picture.
-    fn create(&self, path: &Path, picture: &Picture, made: String) -> Result<Output, BakeError> {
+    fn create(&self, path: &Path, picture: &Picture, made: &Hash) -> Result<Output, BakeError> {
         Ok(if let Some(bits) = self.png {
-            let png = PngWriter::create(path, picture.size(), picture.has_alpha(), bits, made);
+            let (size, alpha) = (picture.size(), picture.has_alpha());
+            let png = PngWriter::create(path, size, alpha, bits, made.to_string());
             Output::Png(png.map_err(WriteExrError::Io)?)
         } else {
             let mut description = self.description(picture);
-            description.attributes.insert(attributes::MADE.into(), made.into());
+            description.attributes.insert(attributes::MADE.into(), made.to_string().into());
             if self.options.layout == Layout::Mipmap {
                 let [width, height] = picture.size();
                 let aspect = to_single(width as f64 / height as f64);

@@ -44,6 +44,7 @@ mod picture;
 mod python;
 mod spectral;
 
+pub use bake::hash::Hash;
 pub use bake::material_picture::MaterialPicture;
 pub use bake::png::PngBits;
 pub use bake::repair::Repair;

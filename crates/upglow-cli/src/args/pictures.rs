@@ -1,6 +1,6 @@
 //! The options of the commands for pictures.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use upglow_color::{Adaptation, Grid, choices};
 use upglow_image::{Declared, DeclaredAlpha, Encoding, FORMATS, PngBits, Repair, Sample};
@@ -8,6 +8,7 @@ use upglow_terminal::{Threads, word};
 
 use super::LightArgs;
 use super::values::{PictureSpace, bands, lights, picture_space, position, stops};
+use crate::farm::TaskNumbers;
 use crate::pictures::Depth;
 
 /// How to interpret pictures.
@@ -54,14 +55,14 @@ impl PictureArgs {
 
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct BakeArgs {
-    /// Cube made by `upglow build`
+    /// Cube made by `upglow build`; with --task, the plan
     pub(crate) cube: PathBuf,
-    #[arg(required = true, value_name = "IN", help = inputs_help())]
+    #[arg(required_unless_present = "tasks", value_name = "IN", help = inputs_help())]
     pub(crate) inputs: Vec<PathBuf>,
     /// File to write for one picture, EXR or also PNG with --as radiance; file with <UDIM> or %04d in its
     /// name, or folder, for several; folders are created if they do not exist
-    #[arg(long, short, value_name = "OUT")]
-    pub(crate) output: PathBuf,
+    #[arg(long, short, value_name = "OUT", required_unless_present = "tasks")]
+    output: Option<PathBuf>,
     /// Skip pictures whose output was made from the same picture, cube and options
     #[arg(long)]
     pub(crate) update: bool,
@@ -82,7 +83,30 @@ pub(crate) struct BakeArgs {
 
     #[command(flatten)]
     pub(crate) result: ResultArgs,
+
+    /// Bake nothing, but write to this file a plan: hashes of cube, options and pictures, and a numbered task
+    /// for each picture. A name that ends in .template.json is that of an Open Job Description template, and the
+    /// plan is beside it
+    #[arg(long, value_name = "PLAN.json", help_heading = "Farm", conflicts_with = "update")]
+    pub(crate) plan: Option<PathBuf>,
+    #[arg(
+        long = "task",
+        value_name = TASK_NUMBERS,
+        help = "Do these tasks of a plan, as 3, 1-50 or 1,4,7-9; what is already done is left as it is",
+        help_heading = "Farm",
+        conflicts_with_all = ["inputs", "plan"]
+    )]
+    pub(crate) tasks: Option<TaskNumbers>,
 }
+
+impl BakeArgs {
+    /// Where the files go. Tasks of a plan have files of their own.
+    pub(crate) fn output(&self) -> &Path {
+        self.output.as_deref().unwrap_or(Path::new(""))
+    }
+}
+
+const TASK_NUMBERS: &str = "N|A-B";
 
 #[derive(Clone, Debug, clap::Args)]
 #[command(next_help_heading = "Output")]
@@ -160,6 +184,14 @@ pub(crate) struct CheckArgs {
     pub(crate) threads: Threads,
     #[command(flatten)]
     pub(crate) picture: PictureArgs,
+    #[arg(
+        long = "task",
+        value_name = TASK_NUMBERS,
+        help = "Check the pictures of these tasks of the plan IN with its cube and options",
+        help_heading = "Farm",
+        conflicts_with_all = ["cube", "illuminant", "adapt", "PictureArgs", "LightArgs"]
+    )]
+    pub(crate) tasks: Option<TaskNumbers>,
 }
 
 #[derive(Clone, Debug, clap::Args)]
@@ -179,6 +211,14 @@ pub(crate) struct LintArgs {
     /// Check the header only, not the texels
     #[arg(long)]
     pub(crate) names_only: bool,
+    #[arg(
+        long = "task",
+        value_name = TASK_NUMBERS,
+        help = "Check the files of these tasks of the plan FILE: that each is there and made from what the \
+                plan says, and spectral ones as any other",
+        help_heading = "Farm"
+    )]
+    pub(crate) tasks: Option<TaskNumbers>,
 }
 
 #[derive(Clone, Debug, clap::Args)]

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use serde::Serialize;
+use upglow::Cube;
 use upglow_color::{Choice, Grid, Illuminant};
 use upglow_fit::KindCounts;
 use upglow_image::{
@@ -15,11 +16,13 @@ use upglow_terminal::{Console, Failure, Report};
 use crate::args::{BakeArgs, BakeForm, BakeFormat, SampleName};
 use crate::batch::{Batch, Interpreted};
 use crate::output::{Lines, warn, warn_of_ultraviolet};
-use crate::pictures::{Depth, Input, Outputs};
+use crate::pictures::{Depth, Input, Named, Outputs, RealPictures};
 use crate::{files, pictures, plan};
 
+use super::{bake_plan, bake_tasks};
+
 #[derive(Debug, Serialize)]
-struct BakeReport {
+pub(super) struct BakeReport {
     input: String,
     file: String,
     form: &'static str,
@@ -44,41 +47,104 @@ struct BakeReport {
 }
 
 pub(crate) fn run(args: &BakeArgs, console: &Console) -> Result<(), Failure> {
-    let format = format(args);
-    let forms = forms(args, format)?;
-    let options = BakeOptions {
-        declared: args.picture.declared(),
-        repair: args.repair,
-        sample: args.result.sample.unwrap_or(SampleName::Half).into(),
-        layout: if format == BakeFormat::Tx { Layout::Mipmap } else { Layout::Rows },
-    };
+    if let Some(tasks) = &args.tasks {
+        return bake_tasks::run(args, tasks, console);
+    }
+    let recipe = Recipe::new(args)?;
     let inputs = pictures::find(&args.inputs, args.picture.depth())?;
-    let lights: Vec<&str> = forms.iter().filter_map(Form::light).map(Illuminant::name).collect();
+    let lights = recipe.lights();
     let variants: Vec<String> = if lights.len() > 1 {
         lights.iter().map(|light| in_file_name(light)).collect()
     } else {
         Vec::new()
     };
     let outputs = Outputs {
-        path: &args.output,
+        path: args.output(),
         form: args.form.name(),
-        ending: format.name(),
+        ending: recipe.format.name(),
         variants: &variants,
     };
     let outputs = outputs.of(&inputs.pictures)?;
-    check_outputs(args, &inputs.paths(), &outputs.concat())?;
+    refuse_own_folder(args)?;
+    if let Some(plan) = &args.plan {
+        return bake_plan::run(args, plan, &recipe, &inputs, &outputs, console);
+    }
+    check_outputs(args, &inputs.pictures, &outputs)?;
     let cube = files::read_cube(&args.cube)?;
-    let baker = |form: &Form| Baker::new(&cube, form.clone(), options.clone());
-    let bakers: Result<Vec<Baker<'_>>, BakeError> = forms.iter().map(baker).collect();
-    let bakers = bakers.map_err(|error| refused(error, &args.cube))?;
-    let missing = |form: &Form| cube.model().missing_ultraviolet(form.light()?);
-    let missing_ultraviolet: Vec<Option<String>> =
-        forms.iter().map(|form| warn_of_ultraviolet(missing(form))).collect();
-    let mut batch = Batch::new("baked", &inputs);
-    let mut pairs = inputs.pictures.iter().zip(&outputs);
-    let ended = pairs.try_for_each(|(Input { path: input, .. }, outputs)| {
-        for (i, (baker, output)) in bakers.iter().zip(outputs).enumerate() {
-            if args.update && baker.is_made(input, output) {
+    let work = Work::new(args, &recipe, &cube)?;
+    let mut batch = Batch::new("baked", inputs.pictures.len(), &inputs.left_out);
+    let ended = inputs.pictures.iter().try_for_each(|input| {
+        let (path, outputs) = (input.path(), outputs.files(input)?);
+        let is_made = |i: usize| args.update && work.bakers[i].is_made(&path, &outputs[i]);
+        work.bake(&path, &outputs, is_made, &mut batch, console)
+    });
+    batch.finish(console, ended)
+}
+
+/// What is written for each picture, and with which options.
+#[derive(Debug)]
+pub(super) struct Recipe {
+    format: BakeFormat,
+    /// One form, or one for each light.
+    forms: Vec<Form>,
+    options: BakeOptions,
+}
+
+impl Recipe {
+    pub(super) fn new(args: &BakeArgs) -> Result<Self, Failure> {
+        let format = format(args);
+        let options = BakeOptions {
+            declared: args.picture.declared(),
+            repair: args.repair,
+            sample: args.result.sample.unwrap_or(SampleName::Half).into(),
+            layout: if format == BakeFormat::Tx { Layout::Mipmap } else { Layout::Rows },
+        };
+        Ok(Self { format, forms: forms(args, format)?, options })
+    }
+
+    fn lights(&self) -> Vec<&str> {
+        self.forms.iter().filter_map(Form::light).map(Illuminant::name).collect()
+    }
+}
+
+/// All that bakes pictures with a cube.
+#[derive(Debug)]
+pub(super) struct Work<'a> {
+    args: &'a BakeArgs,
+    recipe: &'a Recipe,
+    /// One for each file of a picture.
+    pub(super) bakers: Vec<Baker<'a>>,
+    /// What each light lacks that the dyes absorb.
+    missing_ultraviolet: Vec<Option<String>>,
+}
+
+impl<'a> Work<'a> {
+    pub(super) fn new(
+        args: &'a BakeArgs,
+        recipe: &'a Recipe,
+        cube: &'a Cube,
+    ) -> Result<Self, Failure> {
+        let baker = |form: &Form| Baker::new(cube, form.clone(), recipe.options.clone());
+        let bakers: Result<Vec<Baker<'_>>, BakeError> = recipe.forms.iter().map(baker).collect();
+        let bakers = bakers.map_err(|error| refused(error, &args.cube))?;
+        let missing = |form: &Form| cube.model().missing_ultraviolet(form.light()?);
+        let warned = recipe.forms.iter().map(|form| warn_of_ultraviolet(missing(form)));
+        Ok(Self { args, recipe, bakers, missing_ultraviolet: warned.collect() })
+    }
+
+    /// Bakes the files of a picture, but for those that are made already.
+    pub(super) fn bake(
+        &self,
+        input: &Path,
+        outputs: &[PathBuf],
+        is_made: impl Fn(usize) -> bool,
+        batch: &mut Batch<BakeReport>,
+        console: &Console,
+    ) -> Result<(), Failure> {
+        let Self { args, recipe, .. } = self;
+        let lights = recipe.lights();
+        for (i, (baker, output)) in self.bakers.iter().zip(outputs).enumerate() {
+            if is_made(i) {
                 batch.add_unchanged(input);
                 continue;
             }
@@ -101,13 +167,13 @@ pub(crate) fn run(args: &BakeArgs, console: &Console) -> Result<(), Failure> {
                 file: output.display().to_string(),
                 form: args.form.name(),
                 light: lights.get(i).map(|&light| light.to_owned()),
-                missing_ultraviolet: missing_ultraviolet[i].clone(),
+                missing_ultraviolet: self.missing_ultraviolet[i].clone(),
                 width: baked.size[0],
                 height: baked.size[1],
                 channels: baked.channels,
                 beyond_openimageio: baked.is_beyond_openimageio(),
                 repaired: baked.repaired,
-                beyond_screen: (format == BakeFormat::Png).then_some(baked.beyond_screen),
+                beyond_screen: (recipe.format == BakeFormat::Png).then_some(baked.beyond_screen),
                 kinds: baked.kinds,
                 bytes: baked.bytes,
                 time_s: start.elapsed().as_secs_f64(),
@@ -116,8 +182,7 @@ pub(crate) fn run(args: &BakeArgs, console: &Console) -> Result<(), Failure> {
             batch.add(console, report)?;
         }
         Ok(())
-    });
-    batch.finish(console, ended)
+    }
 }
 
 /// The bands that most other programs use.
@@ -125,13 +190,13 @@ const DEFAULT_BANDS: [u32; 3] = [380, 780, 10];
 
 /// The format that was given, or that of the output's suffix.
 fn format(args: &BakeArgs) -> BakeFormat {
-    let suffix = args.output.extension().and_then(|suffix| suffix.to_str()).unwrap_or_default();
+    let suffix = args.output().extension().and_then(|suffix| suffix.to_str()).unwrap_or_default();
     let of_suffix = || BakeFormat::named(&suffix.to_lowercase()).ok();
     if args.result.tx {
         return BakeFormat::Tx;
     }
     let fits = |format: &BakeFormat| {
-        !args.output.is_dir() && (*format != BakeFormat::Png || args.form == BakeForm::Radiance)
+        !args.output().is_dir() && (*format != BakeFormat::Png || args.form == BakeForm::Radiance)
     };
     args.result.format.or_else(|| of_suffix().filter(fits)).unwrap_or(BakeFormat::Exr)
 }
@@ -190,25 +255,36 @@ fn in_file_name(light: &str) -> String {
     light.chars().map(plain).collect()
 }
 
-/// Creates the folders of the outputs, and checks all outputs before the first is baked.
-fn check_outputs(args: &BakeArgs, inputs: &[PathBuf], outputs: &[PathBuf]) -> Result<(), Failure> {
+/// Refuses to write into a folder of the pictures.
+fn refuse_own_folder(args: &BakeArgs) -> Result<(), Failure> {
     let is_source = |folder: &PathBuf| match args.picture.depth() {
-        Depth::Folder => files::is_same(folder, &args.output),
-        Depth::Subfolders => files::is_inside(&args.output, folder),
+        Depth::Folder => files::is_same(folder, args.output()),
+        Depth::Subfolders => files::is_inside(args.output(), folder),
     };
     if args.inputs.iter().any(|input| input.is_dir() && is_source(input)) {
         let message = "the folder of the pictures, expected another: the next run would bake the \
                        files that this one writes";
-        return Err(Failure::file(&args.output, message));
-    }
-    let pictures = files::really(inputs);
-    for output in outputs {
-        if let Some(folder) = output.parent().filter(|folder| !folder.as_os_str().is_empty()) {
-            files::make_folder(folder)?;
-        }
-        files::check_output_of(output, Some(&args.cube), &pictures)?;
+        return Err(Failure::file(args.output(), message));
     }
     Ok(())
+}
+
+/// Creates the folders of the outputs, and checks all outputs before the first is baked.
+fn check_outputs(args: &BakeArgs, inputs: &[Input], outputs: &Named<'_>) -> Result<(), Failure> {
+    let pictures = RealPictures::new(inputs);
+    for input in inputs {
+        for output in outputs.files(input)? {
+            make_folder_of(&output)?;
+            files::check_output_of(&output, Some(&args.cube), &pictures)?;
+        }
+    }
+    Ok(())
+}
+
+/// Creates the folder of an output.
+pub(super) fn make_folder_of(output: &Path) -> Result<(), Failure> {
+    let folder = output.parent().filter(|folder| !folder.as_os_str().is_empty());
+    folder.map_or(Ok(()), files::make_folder)
 }
 
 /// Names the option or file that prevents the cube from being baked in this form.

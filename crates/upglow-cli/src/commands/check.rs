@@ -12,10 +12,12 @@ use upglow_image::{
 use upglow_terminal::{Console, Failure, Report};
 
 use super::bake::picture_failure;
+use super::bake_tasks;
 use crate::args::CheckArgs;
 use crate::batch::{Batch, Interpreted};
+use crate::farm::TaskNumbers;
 use crate::output::{Lines, warn_of_ultraviolet};
-use crate::pictures::Input;
+use crate::pictures::{Input, RealPictures};
 use crate::{files, pictures, plan};
 
 #[derive(Debug, Serialize)]
@@ -31,8 +33,43 @@ struct PictureReport {
 }
 
 pub(crate) fn run(args: &CheckArgs, console: &Console) -> Result<(), Failure> {
+    match &args.tasks {
+        Some(tasks) => check(&of_tasks(args, tasks)?, console),
+        None => check(args, console),
+    }
+}
+
+/// A check of the pictures of tasks with the cube and the options of their plan.
+fn of_tasks(args: &CheckArgs, tasks: &TaskNumbers) -> Result<CheckArgs, Failure> {
+    let [plan] = &args.inputs[..] else {
+        let message = format!("given with {} files, expected one plan", args.inputs.len());
+        return Err(Failure::option("--task", message));
+    };
+    // The plan's names are valid in another folder.
+    let absolute = |path: &Option<PathBuf>| {
+        let absolute = |path| {
+            let made = std::path::absolute(path);
+            made.map_err(|error| Failure::system(path, &error, "a file to write"))
+        };
+        path.as_deref().map(absolute).transpose()
+    };
+    let (output, heat_map) = (absolute(&args.output)?, absolute(&args.heat_map)?);
+    let mut plan = bake_tasks::open(plan, tasks)?;
+    let planned = bake_tasks::bake_args(&plan)?;
+    let pictures = tasks.iter().map(|number| Ok(plan.task(number)?.picture.into()));
+    Ok(CheckArgs {
+        inputs: pictures.collect::<Result<_, Failure>>()?,
+        output,
+        heat_map,
+        cube: Some(planned.cube),
+        picture: planned.picture,
+        ..args.clone()
+    })
+}
+
+fn check(args: &CheckArgs, console: &Console) -> Result<(), Failure> {
     let inputs = pictures::find(&args.inputs, args.picture.depth())?;
-    check_outputs(args, &inputs.paths())?;
+    check_outputs(args, &inputs.pictures)?;
     let cube = args.cube.as_deref().map(files::read_cube).transpose()?;
     let contract = contract(args, cube.as_ref())?;
     let light = &contract.illuminant;
@@ -46,12 +83,13 @@ pub(crate) fn run(args: &CheckArgs, console: &Console) -> Result<(), Failure> {
         let checked = checker.with_cube(cube, path.display().to_string());
         checker = checked.map_err(|error| Failure::option("--cube", error))?;
     }
-    let mut batch = Batch::new("checked", &inputs);
+    let mut batch = Batch::new("checked", inputs.pictures.len(), &inputs.left_out);
     let mut found = Vec::new();
-    let ended = inputs.pictures.iter().try_for_each(|Input { path: input, .. }| {
-        match console.work(args.threads, |bar| checker.check(input, bar))? {
+    let ended = inputs.pictures.iter().try_for_each(|input| {
+        let input = input.path();
+        match console.work(args.threads, |bar| checker.check(&input, bar))? {
             Ok(report) => found.push(report),
-            Err(error) => batch.add_failure(input, failure(error, input))?,
+            Err(error) => batch.add_failure(&input, failure(error, &input))?,
         }
         Ok(())
     });
@@ -81,7 +119,7 @@ fn failure(error: CheckError, input: &Path) -> Failure {
     }
 }
 
-fn check_outputs(args: &CheckArgs, inputs: &[PathBuf]) -> Result<(), Failure> {
+fn check_outputs(args: &CheckArgs, inputs: &[Input]) -> Result<(), Failure> {
     if args.heat_map.is_some() && inputs.len() != 1 {
         let message = format!(
             "given with {} pictures, expected one; --output has all heat maps",
@@ -89,7 +127,7 @@ fn check_outputs(args: &CheckArgs, inputs: &[PathBuf]) -> Result<(), Failure> {
         );
         return Err(Failure::option("--heat-map", message));
     }
-    let pictures = files::really(inputs);
+    let pictures = RealPictures::new(inputs);
     let page = args.output.iter().map(|path| (path, files::PAGE));
     let mut outputs = page.chain(args.heat_map.iter().map(|path| (path, files::PNG)));
     outputs.try_for_each(|(path, endings)| {

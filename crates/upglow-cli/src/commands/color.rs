@@ -15,6 +15,7 @@ use super::color_report::{ColorReport, LightReport, PartReport};
 use crate::args::{AnswerName, ColorArgs};
 use crate::metamers::{self, KnownColor, PaintReport, known_colors};
 use crate::output::warn_of_ultraviolet;
+use crate::pictures::RealPictures;
 use crate::plot::{Curves, Figure, Swatch, svg};
 use crate::{files, plan};
 
@@ -28,11 +29,11 @@ pub(crate) fn run(args: &ColorArgs, console: &Console) -> Result<(), Failure> {
     let rgb = plan::color([&args.red, &args.green, &args.blue], args.direct || is_search)?;
     if let Some(output) = &args.output {
         files::check_ending(output, files::CUBE)?;
-        files::check_output_of(output, Some(&args.file), &files::really(&[]))?;
+        files::check_output_of(output, Some(&args.file), &RealPictures::default())?;
     }
     if let Some(plot) = &args.plot {
         files::check_ending(plot, files::SVG)?;
-        files::check_output_of(plot, Some(&args.file), &files::really(&[]))?;
+        files::check_output_of(plot, Some(&args.file), &RealPictures::default())?;
     }
     let lights = plan::lights_to_see(&args.lights, &args.light)?;
     let known = known_colors(&args.known, &args.light)?;

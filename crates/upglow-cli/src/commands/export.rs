@@ -15,6 +15,7 @@ use super::material_report::{dye_names, unsigned_zeros};
 use crate::args::{ExportArgs, ExportFormat, SlopeLimit, limit_text};
 use crate::files;
 use crate::output::{Lines, quoted, warn, warn_of_own_light};
+use crate::pictures::RealPictures;
 use crate::plan::refuse_ignored;
 
 const HEADER: &str = "r,g,b,c0,c1,c2,shift_nm,width_nm,slope_per_nm,dye_a,dye_b,weight,\
@@ -38,7 +39,7 @@ struct ExportReport {
 pub(crate) fn run(args: &ExportArgs, console: &Console) -> Result<(), Failure> {
     let kind = kind(args)?;
     files::check_ending(&args.output, &[kind.name()])?;
-    files::check_output_of(&args.output, Some(&args.file), &files::really(&[]))?;
+    files::check_output_of(&args.output, Some(&args.file), &RealPictures::default())?;
     let cube = files::read_cube(&args.file)?;
     // A coefficient table has no dyes.
     let has_dyes = kind != ExportFormat::Coeff;
@@ -88,7 +89,7 @@ fn shader(
     let paths: Vec<PathBuf> =
         shader.payload.iter().map(|file| args.output.with_file_name(&file.name)).collect();
     for path in &paths {
-        files::check_output_of(path, Some(&args.file), &files::really(&[]))?;
+        files::check_output_of(path, Some(&args.file), &RealPictures::default())?;
     }
     for (path, file) in paths.iter().zip(&shader.payload) {
         files::write(path, &file.bytes)?;

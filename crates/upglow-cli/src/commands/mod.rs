@@ -1,6 +1,8 @@
 //! The commands, one per file.
 
 mod bake;
+mod bake_plan;
+mod bake_tasks;
 mod build;
 mod check;
 mod color;

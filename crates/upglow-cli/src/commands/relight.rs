@@ -13,6 +13,7 @@ use super::relight_report::{RelightReport, ViewReport};
 use crate::args::RelightArgs;
 use crate::color_list::{self, NamedColor};
 use crate::output::{push_cell, quoted, warn_of_ultraviolet};
+use crate::pictures::RealPictures;
 use crate::plot::Swatch;
 use crate::plot::swatches::{self, Chart, Column};
 use crate::{files, metamers, plan};
@@ -36,7 +37,7 @@ pub(crate) fn run(args: &RelightArgs, console: &Console) -> Result<(), Failure> 
     for (output, endings) in [(&args.csv, files::CSV), (&args.plot, files::SVG)] {
         if let Some(output) = output {
             files::check_ending(output, endings)?;
-            files::check_output_of(output, Some(&args.file), &files::really(&[]))?;
+            files::check_output_of(output, Some(&args.file), &RealPictures::default())?;
             check_is_no_input(output, args)?;
         }
     }

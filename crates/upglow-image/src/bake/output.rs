@@ -1,12 +1,8 @@
 //! Baked files that are being written.
 
-use std::path::Path;
-
-use super::attributes;
 use super::levels::Levels;
-use super::png::{self, PngWriter};
+use super::png::PngWriter;
 use crate::exr::mipmap::MipmapWriter;
-use crate::exr::reader::ExrReader;
 use crate::exr::writer::{ExrWriter, WriteExrError};
 
 /// A file that takes a picture by bands of rows and appears when it is complete.
@@ -27,10 +23,4 @@ impl Output {
             Self::Mipmap(mipmap) => mipmap.1.finish(),
         }
     }
-}
-
-/// What the file at `path` says it was made from.
-pub(super) fn made(path: &Path) -> Option<String> {
-    let Ok(reader) = ExrReader::open(path) else { return png::made(path) };
-    Some(reader.attributes().get(attributes::MADE)?.as_text()?.to_owned())
 }
