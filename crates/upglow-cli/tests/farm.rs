@@ -28,7 +28,7 @@ fn name(i: usize) -> String {
 
 fn picture(folder: &Folder, name: &str, red: f32) {
     let described = ExrDescription::new([4, 3], ["R", "G", "B"]).with_space(&RgbSpace::default());
-    let mut writer = ExrWriter::create(&folder.path().join(name), described).unwrap();
+    let mut writer = ExrWriter::create(folder.path().join(name), described).unwrap();
     let ramp: Vec<f32> = (0..12).map(|i| i as f32 / 11.0).collect();
     writer.write_band(&[&[red; 12], &ramp, &[0.25; 12]]).unwrap();
     writer.finish().unwrap();

@@ -143,8 +143,8 @@ impl PlanFile {
         let found = if number == self.next { self.read() } else { self.find(number) };
         let failed = |error: io::Error| Failure::system(&self.path, &error, A_PLAN);
         let line = found.map_err(failed)?;
-        let text = line.trim_end().trim_end_matches(',');
-        match serde_json::from_str::<Task>(text) {
+        let text = line.trim_ascii_end();
+        match serde_json::from_slice::<Task>(text.strip_suffix(b",").unwrap_or(text)) {
             Ok(task) if task.task == number && task.files.len() == self.head.bakers.len() => {
                 self.next = number + 1;
                 Ok(task)
@@ -162,12 +162,12 @@ impl PlanFile {
     }
 
     /// The next line.
-    fn read(&mut self) -> io::Result<String> {
+    fn read(&mut self) -> io::Result<Vec<u8>> {
         line(&mut self.file)
     }
 
     /// The line of the task with this number, or that of another if the file is damaged.
-    fn find(&mut self, number: usize) -> io::Result<String> {
+    fn find(&mut self, number: usize) -> io::Result<Vec<u8>> {
         /// So many bytes are read in one piece anyway.
         const CLOSE: u64 = 1 << 13;
         // The lines that begin before the first have no greater number, those from the second on have.
@@ -193,28 +193,28 @@ impl PlanFile {
     }
 }
 
-/// The next line with its break; empty at the end.
-fn line(file: &mut BufReader<File>) -> io::Result<String> {
+/// The next line with its break; empty at the end. Not text, because a search begins amid a line, even amid a letter.
+fn line(file: &mut BufReader<File>) -> io::Result<Vec<u8>> {
     let mut line = Vec::new();
     file.take(MOST_LINE_BYTES).read_until(b'\n', &mut line)?;
-    // A seek may lead into a character.
-    Ok(String::from_utf8(line).unwrap_or_default())
+    Ok(line)
 }
 
 /// The number of the task on a line.
-fn numbered(line: &str) -> Option<usize> {
-    let rest = line.strip_prefix(TASK)?;
-    rest[..rest.find(',')?].parse().ok()
+fn numbered(line: &[u8]) -> Option<usize> {
+    let rest = line.strip_prefix(TASK.as_bytes())?;
+    let end = rest.iter().position(|&byte| byte == b',')?;
+    std::str::from_utf8(&rest[..end]).ok()?.parse().ok()
 }
 
 /// The head on the first line.
-fn head(line: &str) -> Result<Head, String> {
+fn head(line: &[u8]) -> Result<Head, String> {
     #[derive(Deserialize)]
     struct Version {
         upglow_plan: u32,
     }
     let no_plan = |_| format!("no plan, expected {A_PLAN}");
-    let text = line.trim_end().to_owned() + "]}";
+    let text = String::from_utf8_lossy(line.trim_ascii_end()) + "]}";
     let Version { upglow_plan: found } = serde_json::from_str(&text).map_err(no_plan)?;
     if found != VERSION {
         return Err(format!("a plan of version {found}, expected {VERSION}; make the plan again"));
