@@ -65,7 +65,7 @@ struct TasksReport {
     files: usize,
     /// Those that are there and made from what the plan says.
     made: usize,
-    /// Those that are well-formed spectral files, if they shall be.
+    /// Those that are well-formed spectral files, if the plan is to bake such.
     well_formed: Option<usize>,
 }
 
