@@ -21,8 +21,12 @@ use crate::exr::reader::ExrReader;
 /// ```
 /// use upglow_image::Hash;
 ///
-/// // FIPS 180-4, its first example.
-/// assert!(Hash::of(b"abc").to_string().starts_with("ba7816bf8f01cfea"));
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("a.png");
+/// std::fs::write(&path, b"abc")?;
+/// assert_eq!(Hash::of_file(&path)?, Hash::of(b"abc"));
+/// assert_eq!(Hash::of(b"abc").to_string().len(), 64);
+/// # Ok::<(), std::io::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(transparent))]
