@@ -138,9 +138,10 @@ impl PaintReport {
         match self.kind {
             PaintKind::Any => judged,
             PaintKind::Ordinary => format!("no, as asked; {judged}"),
+            PaintKind::Fluorescent if probability > 0.99 => format!("yes, as asked; {judged}"),
             PaintKind::Fluorescent => format!(
                 "yes, as asked; {judged}.\nA paint that does not is shown worse: with a mean error of \
-                 5.8 in place of 1.7 ΔE00 under other lights"
+                 3.9 in place of 1.2 ΔE00 under seven lights"
             ),
         }
     }

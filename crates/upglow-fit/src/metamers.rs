@@ -283,7 +283,7 @@ impl Metamers {
     }
 
     /// How far an answer may be off: the ΔE00 under a light within which the share `share` of the materials, by
-    /// their probabilities, is from `answer`, and how far the model is from real materials.
+    /// their probabilities, is from `answer`.
     ///
     /// For nine of ten of the 99 object colors of CIE 224:2017, of which only the color under D65 is known, the
     /// truth is within the band of 0.9.

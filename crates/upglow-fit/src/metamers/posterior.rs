@@ -77,7 +77,10 @@ impl Posterior<'_> {
             let numbers = solve(&problem, prior::start(start), &SolverOptions::default()).x;
             let weight = problem.log_probability_around(&numbers);
             let mode = Found { weight, does: self.does, dyes, numbers };
-            match modes.iter_mut().find(|known| prior::distance(&known.numbers, &numbers) < SAME) {
+            match modes
+                .iter_mut()
+                .find(|known| prior::distance(self.does, &known.numbers, &numbers) < SAME)
+            {
                 Some(known) if known.weight >= weight => {}
                 Some(known) => *known = mode,
                 None => modes.push(mode),
@@ -132,7 +135,7 @@ struct MetamerProblem<'p> {
 
 impl MetamerProblem<'_> {
     /// The logarithm of the integral of the probability around a maximum of it, but for a constant, by Laplace's
-    /// method: −½·cost − ½·ln det(`JᵀJ`).
+    /// method: the density of what is usual, times exp(−½·cost) / √det(`JᵀJ`).
     fn log_probability_around(&self, numbers: &Numbers) -> f64 {
         let (residuals, jacobian) = self.eval(numbers);
         let cost: f64 = residuals.iter().map(|r| r * r).sum();
@@ -152,7 +155,7 @@ impl MetamerProblem<'_> {
                 }
             }
         }
-        -0.5 * (cost + log)
+        prior::log_density(self.posterior.does) - 0.5 * (cost + log)
     }
 }
 

@@ -39,25 +39,35 @@ pub(crate) struct Relit {
     pub(crate) told: Vec<bool>,
     /// How many materials have a dye.
     pub(crate) dyed: usize,
+    /// Of the colors that the way was not told, the share that is within its band; `None` if it has none.
+    pub(crate) in_band: Option<f64>,
 }
 
 impl Relit {
     pub(crate) fn of(lit: &LitSet, way: &dyn Way) -> Self {
+        let told = way.told();
+        let told: Vec<bool> = lit.lights.iter().map(|light| told.contains(light)).collect();
         let made = |(sample, seen): (&Sample, &Vec<(MatrixSums, Lab)>)| {
             let made = way.material(sample);
             let matrix = made.matrix_like(sample.matrix());
-            let difference = |(sums, color): &(MatrixSums, Lab)| {
-                ciede2000(*color, sums.lab_from_xyz(sums.color(&matrix)))
-            };
-            (seen.iter().map(difference).collect(), made.is_dyed())
+            let mut in_band = Vec::new();
+            let mut de2000 = Vec::with_capacity(seen.len());
+            for (k, (sums, color)) in seen.iter().enumerate() {
+                let answer = sums.color(&matrix);
+                let error = ciede2000(*color, sums.lab_from_xyz(answer));
+                de2000.push(error);
+                let band = (!told[k]).then(|| made.band(&lit.lights[k], answer)).flatten();
+                in_band.extend(band.map(|band| f64::from(u8::from(error <= band))));
+            }
+            (de2000, made.is_dyed(), in_band)
         };
-        let (de2000, dyed): (_, Vec<bool>) =
-            lit.set.samples.par_iter().zip(&lit.seen).map(made).unzip();
-        let told = way.told();
+        let made: Vec<_> = lit.set.samples.par_iter().zip(&lit.seen).map(made).collect();
+        let in_band: Vec<f64> = made.iter().flat_map(|(.., in_band)| in_band).copied().collect();
         Self {
-            de2000,
-            told: lit.lights.iter().map(|light| told.contains(light)).collect(),
-            dyed: dyed.into_iter().filter(|is_dyed| *is_dyed).count(),
+            dyed: made.iter().filter(|(_, is_dyed, _)| *is_dyed).count(),
+            in_band: (!in_band.is_empty()).then(|| Spread::of(in_band).mean),
+            de2000: made.into_iter().map(|(de2000, ..)| de2000).collect(),
+            told,
         }
     }
 

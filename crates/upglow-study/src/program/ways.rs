@@ -1,6 +1,8 @@
 //! Ways to make a material of what is known of a sample.
 
 use std::borrow::Cow;
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex};
 
 use upglow::{
     Accounting, DyeModel, DyeOptions, DyeSet, FilmModel, Fluorescence, Material, Mixing, Mixture,
@@ -41,9 +43,21 @@ pub(crate) struct Made<'w> {
     model: Cow<'w, Model>,
     /// Weights, which add up to 1, and materials.
     parts: Vec<(f64, Material)>,
+    /// What it was chosen from.
+    metamers: Option<Metamers>,
 }
 
-impl Made<'_> {
+impl<'w> Made<'w> {
+    fn of(model: &'w Model, material: Material) -> Self {
+        Self { model: Cow::Borrowed(model), parts: vec![(1.0, material)], metamers: None }
+    }
+
+    /// The ΔE00 from `color` under a light within which nine of ten materials are that it was chosen from.
+    pub(crate) fn band(&self, light: &Illuminant, color: Xyz) -> Option<f64> {
+        let metamers = self.metamers.as_ref()?;
+        Some(metamers.band(&metamers.light(light), color, Metamers::USUAL_SHARE))
+    }
+
     /// The mean as a matrix on the axes of `measured`.
     pub(crate) fn matrix_like(&self, measured: &DonaldsonMatrix) -> DonaldsonMatrix {
         let matrix = |&(weight, material): &(f64, Material)| {
@@ -103,8 +117,7 @@ impl Way for OneColor {
     fn material(&self, sample: &Sample) -> Made<'_> {
         let model = self.fitter.model();
         let color = sample.color(&Illuminant::default(), model.colorimetry().white());
-        let parts = vec![(1.0, self.fit(color).material())];
-        Made { model: Cow::Borrowed(model.model()), parts }
+        Made::of(model.model(), self.fit(color).material())
     }
 }
 
@@ -181,6 +194,8 @@ fn options() -> Vec<OneColor> {
 pub(crate) struct AmongMetamers {
     name: String,
     search: MetamerSearch,
+    /// What was found for samples, by their names: both answers are chosen from it.
+    found: Arc<Mutex<HashMap<String, Metamers>>>,
     /// Lights under which colors are known, and the whites that they are relative to.
     told: Vec<(Illuminant, Xyz)>,
     answer: Answer,
@@ -200,14 +215,15 @@ fn among_metamers() -> Vec<Box<dyn Way>> {
     let alone = PaintKind::ALL.iter().map(|kind| (*kind, Vec::new()));
     let search = |(kind, others): (PaintKind, Vec<Illuminant>)| {
         let search = MetamerSearch::new(&contract, &others, kind).expect(IN_RANGE);
+        let found: Arc<Mutex<HashMap<_, _>>> = Arc::default();
         let also: String = others.iter().map(|light| format!(" + {}", light.name())).collect();
         let white = |light: &Illuminant| search.light(light).white();
         let lights = std::iter::once(&contract.illuminant).chain(&others);
         let told: Vec<_> = lights.map(|light| (light.clone(), white(light))).collect();
         let way = |(word, answer): (&str, Answer)| {
             let name = format!("{kind}, {word}{also}");
-            let (search, told) = (search.clone(), told.clone());
-            Box::new(AmongMetamers { name, search, told, answer }) as Box<dyn Way>
+            let (search, found, told) = (search.clone(), found.clone(), told.clone());
+            Box::new(AmongMetamers { name, search, found, told, answer }) as Box<dyn Way>
         };
         let answers: [(&str, Answer); 2] =
             [("single", |found| found.single()), ("mixture", |found| found.mixture())];
@@ -230,9 +246,19 @@ impl Way for AmongMetamers {
         let color =
             |(light, white): &(Illuminant, Xyz)| Xyz(sample.color(light, *white).0.map(possible));
         let colors: Vec<Xyz> = self.told.iter().map(color).collect();
-        let metamers = self.search.of(&colors).expect("a color in range for each light");
+        let all = || self.found.lock().expect("nothing panics while it is locked");
+        let known = all().get(&sample.name).cloned();
+        let metamers = known.unwrap_or_else(|| {
+            let found = self.search.of(&colors).expect("a color in range for each light");
+            all().insert(sample.name.clone(), found.clone());
+            found
+        });
         let answer = (self.answer)(&metamers).expect("built-in dyes make a set");
-        Made { model: Cow::Owned(answer.model().clone()), parts: answer.parts().to_vec() }
+        Made {
+            model: Cow::Owned(answer.model().clone()),
+            parts: answer.parts().to_vec(),
+            metamers: Some(metamers),
+        }
     }
 }
 
@@ -268,7 +294,7 @@ impl Way for WholeMatrix {
     fn material(&self, sample: &Sample) -> Made<'_> {
         let found = self.0.iter().find(|(name, _)| *name == sample.name);
         let (_, fit) = found.expect("it was made for this sample");
-        Made { model: Cow::Borrowed(fit.model()), parts: vec![(1.0, fit.material())] }
+        Made::of(fit.model(), fit.material())
     }
 }
 
@@ -292,7 +318,8 @@ mod tests {
 
         fn material(&self, _: &Sample) -> Made<'_> {
             let half = |share| (0.5, Material::passive(Sigmoid::flat(share)));
-            Made { model: Cow::Owned(Model::Reflectance), parts: vec![half(0.2), half(0.6)] }
+            let (model, parts) = (Cow::Owned(Model::Reflectance), vec![half(0.2), half(0.6)]);
+            Made { model, parts, metamers: None }
         }
     }
 

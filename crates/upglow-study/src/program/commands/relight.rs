@@ -38,6 +38,9 @@ struct WayReport {
     mean_of_seven: Mean,
     /// The same over all lights.
     mean: Mean,
+    /// Of the colors that the way was not told, the share that is within its band of nine of ten materials; `None`
+    /// for a way without a band.
+    in_band: Option<f64>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -119,6 +122,7 @@ pub(crate) fn measure(
                 lights: lights.iter().enumerate().map(light).collect(),
                 mean_of_seven: Mean::of(relit.means(SEVEN)),
                 mean: Mean::of(relit.means(0..lights.len())),
+                in_band: relit.in_band,
             });
         }
         if !rows.is_empty() {
@@ -144,12 +148,13 @@ impl SetReport {
         let mut text = format!(
             "ΔE00 from {samples} (n = {count}), means ± standard errors; in brackets under lights of which the \
              way was told\n\n\
-             | way | with dye | {} | the seven | all |\n|{}\n",
+             | way | with dye | {} | the seven | all | in band |\n|{}\n",
             names.join(" | "),
-            " --- |".repeat(lights.len() + 4),
+            " --- |".repeat(lights.len() + 5),
         );
         let mut notes = String::new();
-        for (k, WayReport { way, dyed, lights, mean_of_seven, mean }) in ways.iter().enumerate() {
+        for (k, of_way) in ways.iter().enumerate() {
+            let WayReport { way, dyed, lights, mean_of_seven, mean, in_band } = of_way;
             let is_same = |other: &&WayReport| (other.dyed, &other.lights) == (*dyed, lights);
             if ways[..k].iter().any(|other| is_same(&other)) {
                 continue;
@@ -164,7 +169,8 @@ impl SetReport {
             };
             let cells = lights.iter().map(light).chain([mean_of_seven, mean].map(total));
             let cells = cells.collect::<Vec<_>>().join(" | ");
-            writeln!(text, "| {way} | {dyed} | {cells} |").expect(IN_MEMORY);
+            let in_band = in_band.map_or(String::new(), |share| format!("{:.0} %", 100.0 * share));
+            writeln!(text, "| {way} | {dyed} | {cells} | {in_band} |").expect(IN_MEMORY);
             let same = ways[k + 1..].iter().filter(is_same).map(|other| other.way.as_str());
             let same: Vec<&str> = same.collect();
             if !same.is_empty() {
