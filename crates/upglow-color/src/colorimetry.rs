@@ -140,6 +140,21 @@ impl Colorimetry {
         reflectance.into_iter().zip(&self.weights).map(|(r, w)| r * Xyz(*w)).sum()
     }
 
+    /// The same sums over light of other power, `[wavelength]`.
+    pub(crate) fn with_irradiance(&self, irradiance: Vec<f64>) -> Self {
+        let (weights, white) = weights(&irradiance, &self.seen);
+        Self { irradiance, weights, white, ..self.clone() }
+    }
+
+    /// The same light, seen by one sensor in place of an observer: its sum is X, and Y and Z are 0.
+    pub(crate) fn seen_by(&self, sensor: impl Fn(f64) -> f64) -> Self {
+        let alone = |nm: f64| [sensor(nm), 0.0, 0.0];
+        let matching = self.grid.wavelengths_nm().map(alone).collect();
+        let seen: Vec<[f64; 3]> = self.wavelengths_nm.iter().map(|nm| alone(*nm)).collect();
+        let (weights, white) = weights(&self.irradiance, &seen);
+        Self { matching, seen, weights, white, ..self.clone() }
+    }
+
     /// The same for `light`, scaled to as much power over the grid as this one has.
     ///
     /// A contract's white always has Y = 1. Lights of equal power compare instead: under an

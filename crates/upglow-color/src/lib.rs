@@ -8,6 +8,7 @@
 //! - color: [`Xyz`], [`LinearRgb`], [`Lab`], [`RgbSpace`], [`Adaptation`], [`Metric`]
 //! - limits: [`ColorSolid`], the colors that materials reach; [`ColorSolids::standing`], which kind of
 //!   material a color needs, and the nearest colors within reach
+//! - materials as 4×4 matrices, for engines without spectra: [`ReducedBasis`], [`ReducedMatrix`]
 //! - measured matrices of fluorescent samples: [`DonaldsonMatrix`], read from text
 //! - measured tables: [`MeasuredDye`] and the named sets of dyes
 //!
@@ -43,6 +44,8 @@ mod matrix;
 mod metric;
 mod names;
 mod observer;
+mod reduced_basis;
+mod reduced_matrix;
 mod rgb_space;
 #[doc(hidden)]
 pub mod rounding;
@@ -84,6 +87,8 @@ pub use matrix::Matrix3;
 pub use metric::{Goal, Metric};
 pub use names::NameError;
 pub use observer::{Observer, ObserverError};
+pub use reduced_basis::{ReducedBasis, ReducedBasisError};
+pub use reduced_matrix::{ReducedMatrix, Reduction, Xyzu};
 pub use rgb_space::{RgbSpace, RgbSpaceError};
 pub use samples::{Ends, SampleRules, SamplesError};
 pub use screen::{Screen, Shown};

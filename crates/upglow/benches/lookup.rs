@@ -8,7 +8,7 @@ use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use synthetic::{CALLS, Kind, Random, cube};
 use upglow::Interpolation;
-use upglow_color::LinearRgb;
+use upglow_color::{Grid, LinearRgb, ReducedBasis};
 
 fn main() {
     divan::main();
@@ -43,6 +43,23 @@ fn coherent(bencher: Bencher, resolution: usize) {
     bencher.counter(ItemsCount::new(CALLS)).bench_local(|| {
         for &rgb in &rgb {
             let _ = black_box(&table.lookup(rgb));
+        }
+    });
+}
+
+/// The 4×4 matrices of unrelated colors, for engines without spectra.
+#[divan::bench(args = [32, 64])]
+fn reduced_matrix(bencher: Bencher, resolution: usize) {
+    let cube = cube(resolution, Kind::Film);
+    let basis = ReducedBasis::try_new(cube.contract(), Grid::FIT).expect("daylight has every part");
+    let table = cube.reduced_table(&basis);
+    let mut random = Random(1);
+    let rgb: Vec<[f32; 3]> = (0..65 * CALLS).map(|_| random.rgb()).collect();
+    let mut next = 0;
+    bencher.counter(ItemsCount::new(CALLS)).bench_local(|| {
+        next = (next + CALLS) % (64 * CALLS);
+        for &rgb in &rgb[next..next + CALLS] {
+            let _ = black_box(&table.matrix(rgb));
         }
     });
 }

@@ -7,6 +7,7 @@
 //! - reflectance: [`Sigmoid`], [`Vertex`], [`Features`], [`Edge`]
 //! - fluorescence: [`Model`], [`DyeSet`], [`DyeModel`], [`AnalyticModel`]
 //! - color: [`ModelOnGrid`], and [`ColorTable`] for whole images
+//! - 4×4 matrices for engines without spectra: [`ReducedModel`], and [`ReducedTable`] for looked-up colors
 //! - cubes: [`Cube`], [`Interpolation`]; files are described in `docs/cube-format.md`
 //! - files that appear whole or not at all: [`Aside`]
 //! - evaluation and sampling: [`Bispectral`], [`Sample`]
@@ -61,12 +62,14 @@ pub use material::mixture::Mixture;
 pub use material::model::Model;
 pub use material::model_error::ModelError;
 pub use material::model_on_grid::ModelOnGrid;
+pub use material::reduced_model::ReducedModel;
 pub use material::sigmoid::{Sigmoid, Vertex};
 pub use material::{Fluorescence, Material};
 pub use packed::color_table::{ColorTable, LengthError};
 pub use packed::lookup_table::LookupTable;
 pub use packed::mixture::PackedMixture;
 pub use packed::node::PackedNode;
+pub use packed::reduced_table::ReducedTable;
 
 #[cfg(test)]
 mod tests {
@@ -81,6 +84,7 @@ mod tests {
             shared::<LookupTable>();
             shared::<ColorTable>();
             shared::<CoefficientTable>();
+            shared::<ReducedTable>();
             shared::<ModelOnGrid>();
             shared::<Mixture<'_>>();
             shared::<PackedMixture<'_>>();

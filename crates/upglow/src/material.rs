@@ -14,6 +14,7 @@ pub(crate) mod mixture;
 pub(crate) mod model;
 pub(crate) mod model_error;
 pub(crate) mod model_on_grid;
+pub(crate) mod reduced_model;
 pub(crate) mod sampling;
 pub(crate) mod sigmoid;
 

@@ -10,5 +10,6 @@ pub(crate) mod model;
 pub(crate) mod node;
 mod proposal_table;
 mod quantile_table;
+pub(crate) mod reduced_table;
 mod sampling;
 mod vector;

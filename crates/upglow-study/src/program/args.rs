@@ -27,6 +27,9 @@ pub(crate) enum Command {
     /// Measure how materials made from the color of real surfaces look under other lights, beside the surfaces;
     /// takes minutes
     Relight(RelightArgs),
+    /// Measure how near 4×4 matrices, for engines without spectra, come to measured fluorescent materials under
+    /// other lights
+    Reduced(ReducedArgs),
     /// Measure which colors get a dye by the rule of choosing, and how much more than the least; takes
     /// minutes
     Rule(RuleArgs),
@@ -76,6 +79,20 @@ pub(crate) struct RelightArgs {
     /// Only this way to make materials, such as natural or "fluorescent, single"; may be given again
     #[arg(long, value_name = "WAY")]
     pub(crate) only: Vec<String>,
+    #[command(flatten)]
+    pub(crate) threads: Threads,
+}
+
+#[derive(Clone, Debug, clap::Args)]
+pub(crate) struct ReducedArgs {
+    /// Folder of measured fluorescent materials, as .BFC files of the spectrofluorimeter BFC-450; without it
+    /// none are compared
+    #[arg(long, value_name = "FOLDER")]
+    pub(crate) bispectral: Option<PathBuf>,
+    /// Also measure how much the matrices of a cube gain without their limit: the number of nodes along each
+    /// of its axes, 2 to 256
+    #[arg(long, value_name = "N", value_parser = in_range(Cube::RESOLUTIONS))]
+    pub(crate) resolution: Option<usize>,
     #[command(flatten)]
     pub(crate) threads: Threads,
 }

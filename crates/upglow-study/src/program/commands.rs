@@ -1,6 +1,7 @@
 //! The commands, one per file.
 
 mod figures;
+pub(crate) mod reduced;
 pub(crate) mod relight;
 mod reproduce;
 mod rule;
@@ -16,6 +17,7 @@ pub(crate) fn run(Args { command, console }: Args) -> Result<(), Failure> {
         Command::Figures(args) => figures::run(&args, &console),
         Command::Reproduce(args) => reproduce::run(&args, &console),
         Command::Relight(args) => relight::run(&args, &console),
+        Command::Reduced(args) => reduced::run(&args, &console),
         Command::Rule(args) => rule::run(&args, &console),
     }
 }

@@ -22,6 +22,11 @@ pub(crate) fn smooth_lights() -> Vec<Illuminant> {
     ["D65", "A", "E", "D65-cut400"].map(named).to_vec()
 }
 
+/// Whether a light is daylight times something smooth: not a lamp with lines, and not ultraviolet alone.
+pub(crate) fn is_smooth(light: &Illuminant) -> bool {
+    ["D65", "A", "E", "ID65", "D65-cut400"].contains(&light.name())
+}
+
 /// A built-in light.
 pub(crate) fn named(name: &str) -> Illuminant {
     Illuminant::named(name).expect("the light is built in")

@@ -1,8 +1,8 @@
 //! The program `upglow-study`: the figures and claims of König et al. 2020, computed, and what the default
 //! preset gives on measured surfaces.
 //!
-//! A command ([`commands`]) computes [`figures`], [`claims`], how surfaces look [`relight`]ed, or the effects of
-//! the [`rule`] of choosing, and writes them. The numbers that the
+//! A command ([`commands`]) computes [`figures`], [`claims`], how surfaces look [`relight`]ed, what [`reduced`] matrices
+//! make of them, or the effects of the [`rule`] of choosing, and writes them. The numbers that the
 //! Python package needs too are in the library of this crate.
 
 mod args;
@@ -14,6 +14,7 @@ mod field;
 mod figures;
 mod lights;
 mod raster;
+mod reduced;
 mod relight;
 mod report;
 mod rule;
@@ -33,6 +34,7 @@ mod tests {
     mod claims;
     mod definitions;
     mod figures;
+    mod reduced;
     mod relight;
     mod reradiation;
     mod rule;

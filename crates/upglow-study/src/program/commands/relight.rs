@@ -182,4 +182,4 @@ impl SetReport {
 }
 
 /// Why texts can be written.
-const IN_MEMORY: &str = "writing to a string cannot fail";
+pub(super) const IN_MEMORY: &str = "writing to a string cannot fail";
