@@ -15,8 +15,9 @@
 // Units: wavelengths are in nm, densities in 1/nm, colors linear. The rest has no unit.
 // Failure: functions return UpglowStatus and write their result to the memory that a pointer names.
 //     On failure they do not write, and upglow_message() has the reason. No input crashes the program.
-// Memory: only upglow_cube_open, upglow_cube_from_memory, upglow_colors_create and
-//     upglow_colors_create_sampled allocate, and only the destroy functions free.
+// Memory: only upglow_cube_open, upglow_cube_from_memory, upglow_colors_create,
+//     upglow_colors_create_sampled and upglow_matrices_create allocate what only the destroy functions
+//     free; upglow_reduced_light allocates while it works.
 // Threads: cubes, colors and materials are immutable, and threads may share them. The caller must not
 //     destroy one while another thread uses it, nor write a material while another thread reads it.
 //     Each thread has its own message.
@@ -74,6 +75,10 @@ typedef struct UpglowColors UpglowColors;
 // A cube of materials for all colors of an RGB space. It is immutable: any number of threads may
 // use it at once.
 typedef struct UpglowCube UpglowCube;
+
+// The materials of a cube as 4x4 matrices of light given as X, Y, Z and ultraviolet. It is immutable:
+// any number of threads may use it at once. It does not refer to the cube.
+typedef struct UpglowMatrices UpglowMatrices;
 
 // Properties of a cube. The texts are UTF-8, and valid until the cube is destroyed.
 typedef struct {
@@ -360,6 +365,49 @@ UpglowStatus upglow_xyz(const UpglowColors *colors,
                         float *xyz,
                         size_t count,
                         size_t *outside);
+
+// Computes the matrices of a cube's materials. `docs/rgb-engines.md` of the sources has the equation
+// and the errors.
+//
+// `*matrices` receives matrices that the caller owns and must destroy with
+// `upglow_matrices_destroy`. All memory for `upglow_reduced_matrix` is allocated here: 64 bytes per
+// node of the cube.
+//
+// Fails with `UPGLOW_STATUS_INVALID_ARGUMENT` if the light of the cube has next to no blue, green or
+// red.
+//
+// Pointers are null or point to a cube and to room for a pointer.
+UpglowStatus upglow_matrices_create(const UpglowCube *cube,
+                                    UpglowMatrices **matrices);
+
+// Frees matrices; null is allowed and does nothing. No other thread may be using them.
+//
+// `matrices` is null or came from `upglow_matrices_create`, and was not destroyed before.
+void upglow_matrices_destroy(UpglowMatrices *matrices);
+
+// The matrix of a color's material: `matrix` is `[4][4]`, outgoing and incident X, Y, Z, U. Its
+// product with the four numbers of a light is what leaves. Matrices may be interpolated and filtered.
+//
+// `rgb` is red, green and blue, linear, in the cube's space.
+//
+// Fails with `UPGLOW_STATUS_OUTSIDE` if a component is not in 0 to 1.
+//
+// Pointers are null or point to matrices, to 3 values and to room for 16.
+UpglowStatus upglow_reduced_matrix(const UpglowMatrices *matrices,
+                                   const float *rgb,
+                                   float *matrix);
+
+// X, Y, Z and U of a built-in light, named as for `upglow_colors_create`, or of the cube's own if
+// `illuminant` is null: `light` is `[4]`. A perfect diffuser has Y = 1; light too dark to see by, such
+// as an ultraviolet lamp's, has as much power as the cube's own. D65 has U = 1. It allocates memory,
+// and frees it.
+//
+// Fails with `UPGLOW_STATUS_INVALID_ARGUMENT` if there is no such light.
+//
+// Pointers are null or point to matrices, to text that ends with a zero byte and to room for 4 values.
+UpglowStatus upglow_reduced_light(const UpglowMatrices *matrices,
+                                  const char *illuminant,
+                                  float *light);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -45,15 +45,9 @@ pub unsafe extern "C" fn upglow_colors_create(
     guarded(|| {
         // SAFETY: the caller keeps this function's promise.
         let (cube, output) = unsafe { (borrowed(cube, "cube")?, Output::new(colors, "colors")?) };
-        let light = match illuminant.is_null() {
-            true => cube.cube.contract().illuminant.clone(),
-            false => {
-                // SAFETY: the same.
-                let name = unsafe { text(illuminant, "illuminant")? }.to_str();
-                let argument = "illuminant";
-                Illuminant::named(name.map_err(|_| Failure::NotText { argument })?)?
-            }
-        };
+        // SAFETY: the same.
+        let named = unsafe { named_light(illuminant)? };
+        let light = named.unwrap_or_else(|| cube.cube.contract().illuminant.clone());
         output.write(Box::into_raw(UpglowColors::try_new(cube, light)?));
         Ok(())
     })
@@ -91,6 +85,21 @@ pub unsafe extern "C" fn upglow_colors_create_sampled(
         output.write(Box::into_raw(UpglowColors::try_new(cube, light)?));
         Ok(())
     })
+}
+
+/// The built-in light of this name; `None` if it is null.
+///
+/// # Safety
+///
+/// It is null or points to text that ends with a zero byte.
+pub(crate) unsafe fn named_light(illuminant: *const c_char) -> Result<Option<Illuminant>, Failure> {
+    if illuminant.is_null() {
+        return Ok(None);
+    }
+    let argument = "illuminant";
+    // SAFETY: the caller promises it.
+    let name = unsafe { text(illuminant, argument)? }.to_str();
+    Ok(Some(Illuminant::named(name.map_err(|_| Failure::NotText { argument })?)?))
 }
 
 impl UpglowColors {

@@ -7,7 +7,7 @@ use std::fmt::{self, Write};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use upglow::{CubeFileError, LookupError, ReadCubeError};
-use upglow_color::{ContractError, IlluminantError};
+use upglow_color::{ContractError, IlluminantError, ReducedBasisError};
 
 /// How a call ended. On any status but `UPGLOW_STATUS_OK` the call has not written its results, and
 /// `upglow_message` returns the reason.
@@ -55,6 +55,8 @@ pub(crate) enum Failure {
     Illuminant(#[from] IlluminantError),
     #[error(transparent)]
     Contract(#[from] ContractError),
+    #[error(transparent)]
+    ReducedBasis(#[from] ReducedBasisError),
 }
 
 impl Failure {

@@ -9,6 +9,7 @@
 //! - materials: [`UpglowMaterial`], a look-up into the caller's memory, and its evaluation
 //! - wavelengths drawn: [`UpglowSample`]
 //! - colors of whole images: [`UpglowColors`]
+//! - 4×4 matrices for engines without spectra: [`UpglowMatrices`]
 //!
 //! # Safety
 //!
@@ -29,11 +30,14 @@ mod sampling;
 
 mod colors;
 
+mod matrices;
+
 mod pointer;
 
 pub use colors::*;
 pub use cube::*;
 pub use failure::*;
 pub use material::*;
+pub use matrices::*;
 pub use sampling::*;
 pub use version::*;

@@ -210,6 +210,37 @@ static void arrays_of_colors(const UpglowCube *cube) {
     upglow_colors_destroy(colors);
 }
 
+static void matrices_of_colors(const UpglowCube *cube) {
+    const UpglowStatus null = UPGLOW_STATUS_NULL_POINTER, invalid = UPGLOW_STATUS_INVALID_ARGUMENT;
+    const float rgb[3] = {0.4f, 0.4f, 0.4f}, odd[3] = {0.4f, NAN, 0.4f};
+    float matrix[4][4], light[4] = {7};
+    UpglowMatrices *matrices = NULL;
+    matrix[0][0] = 7;
+    REFUSED(upglow_matrices_create(NULL, &matrices), null);
+    REFUSED(upglow_matrices_create(cube, NULL), null);
+    HOLDS(matrices == NULL);
+    ACCEPTED(upglow_matrices_create(cube, &matrices));
+    REFUSED(upglow_reduced_matrix(NULL, rgb, matrix[0]), null);
+    REFUSED(upglow_reduced_matrix(matrices, NULL, matrix[0]), null);
+    REFUSED(upglow_reduced_matrix(matrices, rgb, NULL), null);
+    REFUSED(upglow_reduced_matrix(matrices, odd, matrix[0]), UPGLOW_STATUS_OUTSIDE);
+    REFUSED(upglow_reduced_light(NULL, NULL, light), null);
+    REFUSED(upglow_reduced_light(matrices, NULL, NULL), null);
+    REFUSED(upglow_reduced_light(matrices, "D66", light), invalid);
+    REFUSED(upglow_reduced_light(matrices, "\xff", light), invalid);
+    HOLDS(matrix[0][0] == 7 && light[0] == 7);
+    ACCEPTED(upglow_reduced_matrix(matrices, rgb, matrix[0]));
+    ACCEPTED(upglow_reduced_light(matrices, NULL, light));
+    float y = 0;
+    for (int i = 0; i < 4; i++) {
+        y += matrix[1][i] * light[i];
+    }
+    /* Gray under the cube's own light. */
+    HOLDS(fabsf(y - 0.4f) < 1e-3f && fabsf(light[1] - 1) < 1e-6f);
+    upglow_matrices_destroy(matrices);
+    upglow_matrices_destroy(NULL);
+}
+
 /* Many colors at once: the same as one at a time, and empty materials for colors outside. */
 static void many_materials(const UpglowCube *cube) {
     enum { COUNT = 37 };
@@ -361,6 +392,7 @@ int main(int count, char **arguments) {
     odd_numbers(cube, &material);
     odd_materials(cube);
     arrays_of_colors(cube);
+    matrices_of_colors(cube);
     many_materials(cube);
     sampled_lights(cube);
     threads(cube, &material);

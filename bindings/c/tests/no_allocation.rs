@@ -87,13 +87,17 @@ fn assert_allocates_nothing(cube: *mut UpglowCube) {
     let mut colors = null_mut();
     // SAFETY: the pointers are those of a live cube and of a variable.
     unsafe { upglow_colors_create(cube, null(), &raw mut colors) };
+    let mut matrices = null_mut();
+    // SAFETY: the same.
+    unsafe { upglow_matrices_create(cube, &raw mut matrices) };
+    let mut matrix = [0.0_f32; 16];
     let mut material = MaybeUninit::<UpglowMaterial>::uninit();
     let mut sample = MaybeUninit::<UpglowSample>::uninit();
     let (rgb, nm, u) = ([0.2_f32, 0.5, 0.7], [450.0_f32; 8], [0.9_f32, 0.5]);
     let (mut value, mut values, mut xyz) = (0.0, [0.0_f32; 8], [0.0_f32; 3]);
     let colors_of_many = [[0.2_f32, 0.5, 0.7], [0.2, f32::NAN, 0.7]];
     let mut many = [const { MaybeUninit::<UpglowMaterial>::uninit() }; 2];
-    let mut statuses = [UpglowStatus::Internal; 9];
+    let mut statuses = [UpglowStatus::Internal; 10];
     let count = allocations(|| {
         let material_mut = material.as_mut_ptr();
         // SAFETY: the pointers are those of live handles and of variables; the first call fills
@@ -115,12 +119,14 @@ fn assert_allocates_nothing(cube: *mut UpglowCube) {
                 upglow_sample_incident(material_mut, 540.0, u.as_ptr(), sample.as_mut_ptr()),
                 upglow_sample_outgoing(material_mut, 450.0, u.as_ptr(), sample.as_mut_ptr()),
                 upglow_xyz(colors, rgb.as_ptr(), xyz.as_mut_ptr(), 1, null_mut()),
+                upglow_reduced_matrix(matrices, rgb.as_ptr(), matrix.as_mut_ptr()),
             ]
         };
     });
-    assert_eq!((count, statuses), (0, [UpglowStatus::Ok; 9]));
+    assert_eq!((count, statuses), (0, [UpglowStatus::Ok; 10]));
     // SAFETY: nobody uses them any more.
     unsafe {
+        upglow_matrices_destroy(matrices);
         upglow_colors_destroy(colors);
         upglow_cube_destroy(cube);
     }
