@@ -23,6 +23,7 @@ mod model;
 mod nodes;
 mod observer;
 mod questions;
+mod reduced;
 mod relight;
 mod rows;
 mod spectra;
@@ -54,6 +55,7 @@ mod _upglow {
         model::{DyeSet, Model},
         observer::Observer,
         questions::answer,
+        reduced::Reduced,
         relight::relight,
         rows::first_outside,
         spectra::{reradiation_matrix, spectrum},

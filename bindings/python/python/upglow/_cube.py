@@ -237,12 +237,13 @@ class Cube:
     ``threads`` is a number of threads, by default one per core. No result depends on it.
     """
 
-    __slots__ = ("_colors", "_contract", "_model", "_native")
+    __slots__ = ("_colors", "_contract", "_model", "_native", "_reduction")
 
     _native: _upglow.Cube
     _contract: Contract
     _model: ModelName | None
     _colors: dict[tuple[Illuminant | None, str, int], _upglow.Colors]
+    _reduction: _upglow.Reduced | None
 
     def __init__(self) -> None:
         raise TypeError("a cube comes from upglow.build, Cube.read or Cube.from_bytes")
@@ -254,6 +255,7 @@ class Cube:
         cube._contract = Contract._of(native.contract())
         cube._colors = {}
         cube._model = None
+        cube._reduction = None
         return cube
 
     # Files
@@ -543,6 +545,72 @@ class Cube:
         found = _upglow.reradiation_matrix(self._native, native, band, threads)
         n = (band[1] - band[0]) // band[2] + 1
         return found.reshape(*shape, n, n)
+
+    def reduced_matrix(
+        self, of: Of, *, outside: str = "raise", threads: Threads = None
+    ) -> NDArray[Any]:
+        """The 4×4 matrix by which a material acts on light given as X, Y, Z and ultraviolet.
+
+        For engines without spectra: ``matrix @ light`` is what leaves, where `reduced_light` gives the
+        light's four numbers. It is linear in the material, so that matrices may be interpolated and
+        filtered; exact under the contract's light; and it returns no light stronger than it came.
+        docs/rgb-engines.md in the repository has the equation and the errors.
+
+        The first call prepares a table for RGB in single precision.
+
+        Returns
+        -------
+        array of shape (..., 4, 4), ``[..., outgoing, incident]``, each X, Y, Z, U
+
+        Examples
+        --------
+        >>> import upglow
+        >>> cube = upglow.build(upglow.Contract(), resolution=2, model=upglow.Reflectance())
+        >>> matrix = cube.reduced_matrix([0.5, 0.5, 0.5])
+        >>> (matrix @ cube.reduced_light("A")).round(3).tolist()
+        [0.549, 0.5, 0.178, 0.083]
+        """
+        native, shape = subjects(of, outside, self._model_name())
+        found = self._reduced().matrix(self._native, native, threads)
+        return found.reshape(*shape, 4, 4)
+
+    def reduced_light(self, light: Any = None) -> NDArray[np.float64]:
+        """X, Y, Z and U of a light; of the contract's by default.
+
+        Scaled so that a perfect diffuser has Y = 1; light too dark to see by, such as that of an
+        ultraviolet lamp, to as much power as the contract's light has. D65 has U = 1.
+
+        Returns
+        -------
+        float64 array of shape (4,)
+        """
+        return self._reduced().light(None if light is None else Illuminant(light)._native)
+
+    def without_ultraviolet(self, matrices: ArrayLike) -> NDArray[np.float64]:
+        """3×3 matrices of X, Y, Z from 4×4 ones, for engines that have no fourth channel.
+
+        Blue light then brings as much ultraviolet as the contract's does. Exact under the contract's
+        light, and wrong under light that has more ultraviolet or less.
+
+        Parameters
+        ----------
+        matrices
+            What `reduced_matrix` returns, shape (..., 4, 4).
+
+        Returns
+        -------
+        float64 array of shape (..., 3, 3)
+        """
+        array = numbers("matrices", matrices)
+        if array.shape[-2:] != (4, 4):
+            raise ValueError(f"matrices has shape {array.shape}, expected (..., 4, 4)")
+        flat = np.ascontiguousarray(array.reshape(-1, 16))
+        return self._reduced().without_ultraviolet(flat).reshape(*array.shape[:-2], 3, 3)
+
+    def _reduced(self) -> _upglow.Reduced:
+        if self._reduction is None:
+            self._reduction = _upglow.Reduced(self._native)
+        return self._reduction
 
     def radiance_factor(
         self,
