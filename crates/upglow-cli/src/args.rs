@@ -221,7 +221,8 @@ pub(crate) struct ExportArgs {
     /// File to write
     pub(crate) output: PathBuf,
     /// csv: one line per node; coeff: reflectances only, for Mitsuba 3 and colour-science; html: a page
-    /// to explore it with, offline; js: a module of JavaScript, and the others shader source, with
+    /// to explore it with, offline; mtlx: a MaterialX surface with its color under --light, for renderers of
+    /// RGB, and the same for USD; js: a module of JavaScript, and the others shader source, with
     /// textures beside them [default: by the suffix of the output]
     #[arg(long, value_name = "NAME", value_parser = word::<ExportFormat>())]
     pub(crate) format: Option<ExportFormat>,
@@ -232,6 +233,14 @@ pub(crate) struct ExportArgs {
     /// [default: none, as in Jakob and Hanika 2019]
     #[arg(long, value_name = "SLOPE|none", value_parser = slope_limit)]
     pub(crate) slope_max_per_nm: Option<SlopeLimit>,
+    #[arg(
+        long = "light",
+        value_name = "NAME|FILE",
+        help = format!("Light of the colors of mtlx: {} [default: that of the cube]", lights())
+    )]
+    pub(crate) light: Option<String>,
+    #[command(flatten)]
+    pub(crate) light_file: LightArgs,
     #[command(flatten)]
     pub(crate) threads: Threads,
 }
@@ -242,6 +251,7 @@ pub(crate) enum ExportFormat {
     Csv,
     Coeff,
     Html,
+    MaterialX,
     Shader(Language),
 }
 
@@ -251,6 +261,7 @@ choices!(
     Csv = "csv",
     Coeff = "coeff",
     Html = "html",
+    MaterialX = "mtlx",
     Shader(Language::Wgsl) = "wgsl",
     Shader(Language::Glsl) = "glsl",
     Shader(Language::Hlsl) = "hlsl",

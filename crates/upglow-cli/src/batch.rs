@@ -22,6 +22,9 @@ pub(crate) struct Batch<R> {
     failed: Vec<FailedPicture>,
     /// What the given folders hold beside pictures.
     left_out: Vec<String>,
+    /// What was written about all pictures together.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    documents: Vec<String>,
 }
 
 /// What is reported of a picture.
@@ -49,6 +52,7 @@ impl<R: Report + Interpreted> Batch<R> {
             unchanged: Vec::new(),
             failed: Vec::new(),
             left_out,
+            documents: Vec::new(),
         }
     }
 
@@ -64,6 +68,11 @@ impl<R: Report + Interpreted> Batch<R> {
     /// Adds a picture that an earlier run has already done.
     pub(crate) fn add_unchanged(&mut self, input: &Path) {
         self.unchanged.push(input.display().to_string());
+    }
+
+    /// Adds files that were written about all pictures together.
+    pub(crate) fn add_documents(&mut self, files: Vec<String>) {
+        self.documents.extend(files);
     }
 
     /// Adds a picture that could not be done, and names it.
@@ -90,7 +99,10 @@ impl<R: Report + Interpreted> Batch<R> {
         console: &Console,
         ended: Result<(), Failure>,
     ) -> Result<(), Failure> {
-        let has_summary = self.total > 1 || !self.unchanged.is_empty() || !self.left_out.is_empty();
+        let has_summary = self.total > 1
+            || !self.unchanged.is_empty()
+            || !self.left_out.is_empty()
+            || !self.documents.is_empty();
         if console.json || has_summary {
             console.print(&self)?;
         }
@@ -111,7 +123,7 @@ impl<R: Report + Interpreted> Report for Batch<R> {
     fn text(&self) -> String {
         /// Most names that are listed; `--json` lists all.
         const NAMES: usize = 12;
-        let Self { verb, pictures, unchanged, failed, left_out, .. } = self;
+        let Self { verb, pictures, unchanged, failed, left_out, documents, .. } = self;
         let mut counts = vec![format!("{} {verb}", pictures.len())];
         if !unchanged.is_empty() {
             counts.push(format!("{} unchanged", unchanged.len()));
@@ -136,6 +148,9 @@ impl<R: Report + Interpreted> Report for Batch<R> {
         list("overruled", "whose files state another space or encoding than declared", &overruled);
         let left_out: Vec<&str> = left_out.iter().map(String::as_str).collect();
         list("left out", "that are no pictures", &left_out);
+        for document in documents {
+            lines.add("document", document);
+        }
         lines.to_string()
     }
 }

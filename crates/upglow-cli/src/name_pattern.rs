@@ -23,7 +23,8 @@ enum Number {
     Digits(usize),
 }
 
-const UDIM: &str = "<UDIM>";
+/// The word for the number of a tile.
+pub(crate) const UDIM: &str = "<UDIM>";
 
 /// Whether a text is the number of a UDIM tile.
 pub(crate) fn is_udim(text: &str) -> bool {

@@ -10,7 +10,7 @@ use upglow_image::SUFFIXES;
 use upglow_terminal::Failure;
 
 use crate::files;
-use crate::name_pattern::{NamePattern, is_udim};
+use crate::name_pattern::{NamePattern, UDIM, is_udim};
 
 /// The pictures of a command.
 #[derive(Debug, Default)]
@@ -29,6 +29,8 @@ pub(crate) struct Input {
     name: OsString,
     /// The number that a word in the given name replaces.
     number: Option<Box<str>>,
+    /// Whether that is the number of a tile of a UDIM.
+    is_tile: bool,
 }
 
 /// A folder with pictures of a command.
@@ -63,6 +65,14 @@ impl Input {
             self.folder.path.join(&self.name)
         }
     }
+
+    /// The number of the tile of a UDIM that the picture is, if it is one.
+    pub(crate) fn tile(&self) -> Option<String> {
+        match &self.number {
+            Some(number) => self.is_tile.then(|| number.to_string()),
+            None => Some(tile_of(self.path().file_stem()?.to_str()?)?.1.to_owned()),
+        }
+    }
 }
 
 /// The pictures among the inputs, those that a word for a number stands for, and those in the folders.
@@ -86,8 +96,10 @@ pub(crate) fn find(inputs: &[PathBuf], depth: Depth) -> Result<Inputs, Failure> 
         match pattern {
             None => found.pictures.push(input.clone().into()),
             Some(pattern) => {
+                let is_tile = pattern.word() == UDIM;
                 let tile = |(number, path): (String, PathBuf)| Input {
                     number: Some(number.into()),
+                    is_tile,
                     ..Input::from(path)
                 };
                 found.pictures.extend(pattern.files()?.into_iter().map(tile));
@@ -124,7 +136,7 @@ fn add_folder(folder: &Path, inside: &Path, depth: Depth, to: &mut Inputs) -> Re
         if is_folder && depth == Depth::Subfolders {
             add_folder(folder, &inside.join(name), depth, to)?;
         } else if is_picture(Path::new(&name)) && !here.path.join(&name).is_dir() {
-            to.pictures.push(Input { folder: Arc::clone(&here), name, number: None });
+            to.pictures.push(Input { folder: Arc::clone(&here), name, ..Input::default() });
         } else {
             to.left_out.push(here.path.join(name));
         }
@@ -198,6 +210,11 @@ impl<'a> Outputs<'a> {
 }
 
 impl Named<'_> {
+    /// The path of the files, if it is not that of a folder.
+    pub(crate) fn file(&self) -> Option<&Path> {
+        self.is_file.then_some(self.outputs.path)
+    }
+
     /// The files of a picture.
     pub(crate) fn files(&self, input: &Input) -> Result<Vec<PathBuf>, Failure> {
         let outputs = &self.outputs;
@@ -297,13 +314,18 @@ impl Outputs<'_> {
 /// `wall.1001.exr` becomes `wall.material.1001.exr`, which other programs still recognize as a tile.
 fn name_of(input: &Path, word: &str, ending: &str) -> PathBuf {
     let stem = input.file_stem().unwrap_or_default().to_string_lossy();
-    match stem.rsplit_once(['.', '_']) {
-        Some((name, tile)) if is_udim(tile) => {
+    match tile_of(&stem) {
+        Some((name, tile)) => {
             let separator = &stem[name.len()..=name.len()];
             format!("{name}.{word}{separator}{tile}.{ending}").into()
         }
-        _ => format!("{stem}.{word}.{ending}").into(),
+        None => format!("{stem}.{word}.{ending}").into(),
     }
+}
+
+/// What stands before the number of a tile that a name ends in, and that number.
+fn tile_of(stem: &str) -> Option<(&str, &str)> {
+    stem.rsplit_once(['.', '_']).filter(|(_, tile)| is_udim(tile))
 }
 
 #[cfg(test)]

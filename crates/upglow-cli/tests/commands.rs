@@ -375,6 +375,38 @@ fn shaders_come_with_their_textures() {
     }
 }
 
+#[test]
+fn a_materialx_document_comes_with_its_node_its_colors_and_a_stage() {
+    let folder = folder_with_cube("");
+    let report = folder.json("export cube sky.mtlx --light A");
+    let beside = ["sky.colors.exr", "upglow_color.glsl", "upglow_color.osl", "sky.usda"];
+    assert_eq!(report["textures"], serde_json::json!(beside));
+    for (file, words) in [
+        ("sky.mtlx", "value=\"sky.colors.exr\" colorspace=\"lin_ap1_scene\""),
+        ("sky.usda", "@./sky.colors.exr@"),
+        ("upglow_color.glsl", "void upglow_color("),
+        ("upglow_color.osl", "void upglow_color("),
+    ] {
+        let text = String::from_utf8(folder.read(file)).unwrap();
+        assert!(text.contains(words), "{file}: {text}");
+    }
+    // The white node is white under every light, and a color is another under A than under the light of the cube.
+    let colors = |name: &str| {
+        folder.done(&format!("export cube {name}.mtlx --light {name}"));
+        let path = folder.path().join(format!("{name}.colors.exr"));
+        let mut picture = upglow_image::Picture::open(&path).unwrap();
+        picture.read_band(usize::MAX).unwrap().unwrap().rgb
+    };
+    let [own, a] = ["D65", "A"].map(colors);
+    let nodes = Cube::read(folder.path().join("cube")).unwrap().nodes().len();
+    assert_eq!([own.len(), a.len()], [2 * nodes; 2]);
+    // Rounding of the fit of white, whose level is finite.
+    assert!(a[nodes - 1].iter().all(|v| (v - 1.0).abs() < 1e-3), "{:?}", a[nodes - 1]);
+    assert_ne!(own, a);
+    let message = folder.refused(2, "export cube x.wgsl --light A");
+    assert!(message.contains("--light") && message.contains("--format mtlx"), "{message}");
+}
+
 /// Compares a line with its node, bit by bit.
 fn check_line(cube: &Cube, index: usize, cells: &[&str], dyes: bool) {
     let double = |cell: usize| cells[cell].parse::<f64>().unwrap();

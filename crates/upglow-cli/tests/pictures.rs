@@ -410,7 +410,7 @@ fn options_that_do_not_fit() {
         ("read material.exr --at -1,0", "--at: \"-1\", expected two whole numbers X,Y"),
         ("read material.exr --at 2,0", "--at: 2,0 is outside the picture, expected 0,0 to 1,1"),
         ("lint", "the following required arguments were not provided: <FILE>"),
-        ("export cube x.txt", "--format: not given, expected one of csv, coeff, html, wgsl"),
+        ("export cube x.txt", "--format: not given, expected one of csv, coeff, html, mtlx, wgsl"),
         (
             "export cube x.coeff --resolution 500",
             "--resolution: 500, expected a whole number from 2",
@@ -530,6 +530,45 @@ fn an_update_bakes_what_has_changed() {
     assert_eq!(unchanged(""), ["set/a.exr"]);
     folder.done("build --preset konig2020 --resolution 3 -o cube");
     assert_eq!(unchanged(""), [""; 0]);
+}
+
+#[test]
+fn maps_come_with_documents_that_name_them() {
+    let folder = desk();
+    for name in ["set/wall.1001.exr", "set/wall.1012.exr", "set/in/door.exr"] {
+        picture(&folder, name, 1, &[GRAY], true);
+    }
+    let text = |name: &str| String::from_utf8(folder.read(name)).unwrap();
+    let told = folder.json("bake cube set --recursive -o out --as spectral --mtlx");
+    assert_eq!(told["documents"], serde_json::json!(["out/materials.mtlx", "out/materials.usda"]));
+    let document = text("out/materials.mtlx");
+    for words in [
+        "value=\"wall.spectral.&lt;UDIM&gt;.exr\" colorspace=\"lin_ap1_scene\"",
+        "value=\"in/door.spectral.exr\" colorspace=\"lin_ap1_scene\"",
+    ] {
+        assert!(document.contains(words), "{words}: {document}");
+    }
+    let stage = text("out/materials.usda");
+    assert!(stage.contains("@./wall.spectral.<UDIM>.exr@"), "{stage}");
+    // The tiles 1001 and 1012.
+    assert!(stage.contains("faceVertexCounts = [4, 4]") && stage.contains("(1, 1), (2, 1)"));
+    let lights = "--as radiance --light D65 --light A --mtlx";
+    let told = folder.done(&format!("bake cube set/wall.<UDIM>.exr -o maps/w_<UDIM>.exr {lights}"));
+    assert!(told.contains("document:  maps/w.mtlx\n"), "{told}");
+    let document = text("maps/w.mtlx");
+    assert_eq!(document.matches("<surfacematerial").count(), 2);
+    assert!(document.contains("w.A_&lt;UDIM&gt;.exr"), "{document}");
+    // The same, where all maps are there already.
+    folder.done(&format!("bake cube set/wall.<UDIM>.exr -o maps/w_<UDIM>.exr {lights} --update"));
+    assert_eq!(text("maps/w.mtlx"), document);
+    // Frames are no tiles.
+    folder.done("bake cube set/wall.%04d.exr -o frames/w.%04d.exr --as spectral --mtlx");
+    assert_eq!(text("frames/w.%04d.mtlx").matches("<surfacematerial").count(), 2);
+    let one = |options: &str| folder.refused(2, &format!("bake cube tile.exr -o {options} --mtlx"));
+    let line = one("x.exr");
+    assert_eq!(line, "--mtlx: given with --as material, expected --as spectral or radiance");
+    let line = one("x.png --as radiance --light A");
+    assert_eq!(line, "--mtlx: given with --format png, expected --format exr or tx");
 }
 
 #[test]

@@ -68,7 +68,7 @@ pub use own_material::{OwnMaterial, OwnMaterialError};
 pub use polish::Polisher;
 pub use preset::Preset;
 pub use progress::{Progress, Unwatched, Watch};
-pub use relight::{Appearance, Relighting, SeenBy, View};
+pub use relight::{Appearance, ColoredLightError, Relighting, SeenBy, View};
 pub use seams::{Seam, seams};
 pub use standing_table::{Estimate, StandingTable};
 pub use verify::{

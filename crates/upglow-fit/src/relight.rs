@@ -201,6 +201,22 @@ impl SeenBy<'_> {
         }
         View { seen, appearances }
     }
+
+    /// What a renderer of RGB multiplies with the RGB of a light to get the colors under it: each over that of the
+    /// perfect diffuser, component by component, in the RGB space of the cube.
+    ///
+    /// # Errors
+    ///
+    /// [`ColoredLightError`] if the light is outside that space.
+    pub fn rgb_over_white(&self, light: &Illuminant) -> Result<Vec<LinearRgb>, ColoredLightError> {
+        let view = self.under(light);
+        let white = ColoredLightError::check(&self.own, view.seen.colorimetry.white())?;
+        let over = |appearance: &Appearance| {
+            let rgb = self.own.rgb_from_xyz(appearance.xyz);
+            LinearRgb([0, 1, 2].map(|k| rgb.0[k] / white.0[k]))
+        };
+        Ok(view.appearances.iter().map(over).collect())
+    }
 }
 
 /// What an observer sees of materials under a light.
@@ -210,6 +226,26 @@ pub struct View {
     pub seen: SeenUnder,
     /// One for each material.
     pub appearances: Vec<Appearance>,
+}
+
+/// A light whose RGB are not all positive: no renderer of RGB can show it.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("white is {:.4}, {:.4}, {:.4} under this light, expected RGB above 0", rgb[0], rgb[1], rgb[2])]
+pub struct ColoredLightError {
+    /// The perfect diffuser under the light, in the RGB space of the cube.
+    pub rgb: [f64; 3],
+}
+
+impl ColoredLightError {
+    /// The RGB of the perfect diffuser, whose color is `white`, by the matrices of `colorimetry`.
+    ///
+    /// # Errors
+    ///
+    /// The error, if one of them is not positive.
+    pub fn check(colorimetry: &Colorimetry, white: Xyz) -> Result<LinearRgb, Self> {
+        let white = colorimetry.rgb_from_xyz(white);
+        if white.0.iter().all(|v| *v > 0.0) { Ok(white) } else { Err(Self { rgb: white.0 }) }
+    }
 }
 
 /// How a material looks under a light.
@@ -271,6 +307,35 @@ mod tests {
                 assert_eq!(found.xyz, blend.color(&sums));
             }
         }
+    }
+
+    #[test]
+    fn over_white_grays_are_themselves_under_every_light_and_colors_under_their_own() {
+        // Rounding of a matrix and its inverse.
+        const ROUNDING: f64 = 1e-12;
+        let cube = cube();
+        let nodes = Relighting::of_nodes(&cube);
+        let observer = Observer::default();
+        let seen_by = nodes.seen_by(&observer).unwrap();
+        let own = ModelOnGrid::new(cube.model(), &cube.contract().on(Grid::FIT));
+        for light in ["D65", "A", "FL11", "LED-B3"] {
+            let light_seen = Illuminant::named(light).unwrap();
+            let over_white = seen_by.rgb_over_white(&light_seen).unwrap();
+            for (gray, expected) in [(0, 0.0), (13, 0.5), (26, 1.0)] {
+                // Rounding of the nodes to single precision, and fits of black and white.
+                let error = over_white[gray].0.map(|v| (v - expected).abs());
+                assert!(error.iter().all(|e| *e < 1e-5), "{light} {:?}", over_white[gray]);
+            }
+            for (node, found) in over_white.iter().enumerate().filter(|_| light == "D65") {
+                let color = own.color(cube.node_material(node));
+                let expected = own.colorimetry().rgb_from_xyz(color).0;
+                let error = [0, 1, 2].map(|k| (found.0[k] - expected[k]).abs());
+                assert!(error.iter().all(|e| *e < ROUNDING), "{found:?} {expected:?}");
+            }
+        }
+        let laser = Illuminant::line("laser", 500.0, 2.0).unwrap();
+        let refused = seen_by.rgb_over_white(&laser).unwrap_err();
+        assert!(refused.rgb[0] < 0.0, "{refused}");
     }
 
     #[test]

@@ -23,7 +23,7 @@ use rayon::prelude::*;
 use upglow::{Cube, LookupError};
 use upglow_color::rounding::to_single;
 use upglow_color::{Grid, Illuminant, LinearRgb};
-use upglow_fit::{FitOptionsError, KindCounts, StandingTable, Stopped, Watch};
+use upglow_fit::{ColoredLightError, FitOptionsError, KindCounts, StandingTable, Stopped, Watch};
 
 use self::compact::CompactMaker;
 use self::hash::Hash;
@@ -88,6 +88,22 @@ impl Form {
             Self::Radiance { light } | Self::Screen { light, .. } => Some(light),
             _ => None,
         }
+    }
+
+    /// What the perfect diffuser is in the channels R, G and B of a file, which hold colors under a light in the RGB
+    /// space of the cube; `None` for forms that have no such channels.
+    ///
+    /// # Errors
+    ///
+    /// [`ColoredLightError`] if the light is outside that space.
+    pub fn white(&self, cube: &Cube) -> Option<Result<LinearRgb, ColoredLightError>> {
+        let light = match self {
+            Self::Radiance { light } => light,
+            Self::Spectral { .. } => &cube.contract().illuminant,
+            Self::Material | Self::InterpolatedMaterial | Self::Screen { .. } => return None,
+        };
+        let colorimetry = radiance::colorimetry(cube, light);
+        Some(ColoredLightError::check(&colorimetry, colorimetry.white()))
     }
 
     /// The form that a baked file states: material, spectral or radiance.

@@ -19,8 +19,13 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! For renderers of RGB, [`color_node`] is a node that returns the color of a cube's material under a light,
+//! [`ColorTexture`] the numbers that it reads, and [`Documents`] a surface with it in MaterialX and USD.
+//!
 //! Out of scope: reading or writing files, talking to a driver, how surfaces scatter over angles.
 
+mod color_node;
+mod documents;
 mod error;
 mod javascript;
 mod language;
@@ -31,6 +36,8 @@ mod textures;
 mod tiff;
 mod translation;
 
+pub use color_node::{ColorTexture, color_node};
+pub use documents::{ColorMap, DocumentError, Documents};
 pub use error::ShaderError;
 pub use language::Language;
 pub use shader::{PayloadFile, Shader};

@@ -298,7 +298,7 @@ const GLSL_SAMPLER: &str = "#ifndef UPGLOW_SAMPLER
 ";
 
 /// OSL has no type of four numbers, and reads textures by coordinates in 0..1.
-const OSL_TEXEL: &str = r#"struct UpglowTexel {
+pub(crate) const OSL_TEXEL: &str = r#"struct UpglowTexel {
     float x;
     float y;
     float z;

@@ -28,6 +28,11 @@ pub(crate) fn functions(model: &Model, language: Language) -> String {
     pieces.join("\n")
 }
 
+/// The functions that find the nodes around a color, without their materials, in the templates' dialect.
+pub(crate) fn places(language: Language) -> String {
+    kept(MATERIAL, &["place", language.name()])
+}
+
 /// The conditions of template lines that hold for a model.
 fn traits(model: &Model) -> Vec<&'static str> {
     let mut traits = match model {
@@ -39,6 +44,7 @@ fn traits(model: &Model) -> Vec<&'static str> {
         Model::Analytic(_) => vec!["fluorescent", "concentrated", "bells"],
     };
     traits.extend(model.accounting().map(Accounting::name));
+    traits.push("material");
     traits
 }
 
@@ -75,6 +81,8 @@ mod tests {
     #[test]
     fn every_condition_is_closed_and_a_trait_of_some_shader() {
         let known = [
+            "material",
+            "place",
             "passive",
             "fluorescent",
             "concentrated",

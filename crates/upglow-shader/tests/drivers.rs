@@ -2,6 +2,8 @@
 
 #![expect(clippy::unwrap_used, reason = "a test fails where its files cannot be made")]
 
+mod support;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -12,7 +14,9 @@ use upglow::{
     Sample,
 };
 use upglow_color::{Contract, LinearRgb};
-use upglow_shader::{Language, Shader};
+use upglow_shader::{ColorTexture, Language, Shader, color_node};
+
+use crate::support::{python, runs};
 
 /// Single precision of numbers near 10 under the root, and of curves at 1 nm.
 const SHARE: f64 = 1e-5;
@@ -219,29 +223,8 @@ fn here(file: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/drivers").join(file)
 }
 
-/// The interpreter with these packages, if there is one.
-fn python(packages: &str) -> Option<PathBuf> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let candidates = [
-        std::env::var_os("UPGLOW_PYTHON").map(PathBuf::from),
-        std::env::var_os("UPGLOW_BLENDER_PYTHON").map(PathBuf::from),
-        Some(root.join("target/python/bin/python")),
-        Some("python3".into()),
-    ];
-    let can_import = |python: &PathBuf| {
-        let mut command = Command::new(python);
-        let import = format!("import {packages}");
-        command.args(["-c", &import]).output().is_ok_and(|o| o.status.success())
-    };
-    candidates.into_iter().flatten().find(can_import)
-}
-
 fn node() -> Option<PathBuf> {
     runs("node").then(|| "node".into())
-}
-
-fn runs(program: &str) -> bool {
-    Command::new(program).arg("--version").output().is_ok()
 }
 
 /// The block of the documentation in a language.
@@ -698,6 +681,112 @@ fn javascript_answers_what_the_library_answers() {
 #[test]
 fn osl_answers_what_the_library_answers() {
     check_language(Language::Osl, "osl_answers_what_the_library_answers");
+}
+
+/// The colors that the node returns, per query.
+fn node_colors(
+    language: Language,
+    n: usize,
+    queries: &[Query],
+    texture: &ColorTexture,
+) -> Result<Vec<[f64; 3]>, String> {
+    let (script, packages) = match language {
+        Language::Osl => ("run_osl.py", "bpy, numpy"),
+        _ => ("run_shaders.py", "wgpu, numpy"),
+    };
+    let python = python(packages).ok_or("no Python with ".to_owned() + packages)?;
+    if language == Language::Glsl && !runs("glslangValidator") {
+        return Err("no glslangValidator".into());
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let bytes: Vec<u8> = queries.iter().flat_map(|query| query.to_bytes()).collect();
+    fs::write(at("queries.f32"), bytes).unwrap();
+    let [red, green, blue] = &texture.planes;
+    let texels = red.iter().zip(green).zip(blue).map(|((r, g), b)| [*r, *g, *b, 1.0]);
+    let texels: Vec<u8> = texels.flatten().flat_map(f32::to_le_bytes).collect();
+    // The layout of `docs/shaders.md`.
+    let sizes = [1, n, texture.size[0], texture.size[1], 0, 0].map(|v| u32::try_from(v).unwrap());
+    let mut payload = b"UPGLOWTX".to_vec();
+    payload.extend(sizes.into_iter().flat_map(u32::to_le_bytes));
+    payload.resize(64, 0);
+    payload.extend(texels);
+    fs::write(at("shader.textures"), payload).unwrap();
+    let suffix = format!(".{language}");
+    let file = color_node().into_iter().find(|file| file.name.ends_with(&suffix)).unwrap();
+    let node = String::from_utf8(file.bytes).unwrap();
+    let main = fs::read_to_string(here(&format!("node.{language}"))).unwrap();
+    let source = at(&format!("main.{language}"));
+    match language {
+        Language::Osl => {
+            let [colors, queries] = ["colors.tif", "queries.tif"].map(&at);
+            let before = format!(
+                "#define COLORS {colors:?}\n#define QUERIES {queries:?}\n\
+                 struct textureresource {{ string filename; string colorspace; }};\n"
+            );
+            fs::write(&source, before + &node + &main).unwrap();
+        }
+        _ => {
+            let (arguments, before) = glslang(language).unwrap();
+            let text = format!("{before}{}{main}", node.replace("sampler2D", "texture2D"));
+            fs::write(&source, text).unwrap();
+            let output = Command::new("glslangValidator")
+                .args(arguments)
+                .args(["-o".as_ref(), at("main.spv").as_os_str(), source.as_os_str()])
+                .output()
+                .unwrap();
+            assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
+        }
+    }
+    let output = Command::new(python).arg(here(script)).arg(folder.path()).output().unwrap();
+    let failed = String::from_utf8_lossy(&output.stderr);
+    if failed.contains(NO_DRIVER) {
+        return Err(NO_DRIVER.into());
+    }
+    assert!(output.status.success(), "{failed}");
+    let bytes = fs::read(at("answers.f32")).unwrap();
+    let numbers: Vec<f64> =
+        bytes.as_chunks().0.iter().map(|word| f64::from(f32::from_le_bytes(*word))).collect();
+    Ok(numbers.as_chunks::<16>().0.iter().map(|a| [a[0], a[1], a[2]]).collect())
+}
+
+/// Compares with the blend of the nodes' colors that the library's weights make.
+fn check_node(language: Language, test: &str) {
+    // Single precision of sums of numbers below 2.
+    const ROUNDING: f64 = 1e-6;
+    let cube = &cubes()[0];
+    let mut random = Random(7);
+    let colors: Vec<LinearRgb> = (0..RESOLUTION.pow(3))
+        .map(|_| LinearRgb([(); 3].map(|()| random.between(0.0, 1.8))))
+        .collect();
+    let texture = ColorTexture::new(RESOLUTION, &colors).unwrap();
+    let mut queries: Vec<Query> = (0..2000).map(|_| Query::random(&mut random)).collect();
+    queries.extend(odd_queries());
+    let found = match node_colors(language, RESOLUTION, &queries, &texture) {
+        Ok(found) => found,
+        Err(reason) => return println!("skipped: {test}, {reason}"),
+    };
+    assert_eq!(found.len(), queries.len());
+    for (query, found) in queries.iter().zip(found) {
+        // What is outside counts as the nearer end, and NaN as 0.
+        let inside = query.rgb.map(|v| f64::from(if v > 0.0 { v.min(1.0) } else { 0.0 }));
+        let corners = cube.corners(LinearRgb(inside)).unwrap();
+        let blend = |k: usize| corners.iter().map(|(node, w)| w * colors[*node].0[k]).sum::<f64>();
+        for k in 0..3 {
+            let error = (found[k] - blend(k)).abs();
+            assert!(error < ROUNDING, "{query:?}: {found:?}, expected {}", blend(k));
+        }
+    }
+}
+
+#[test]
+fn the_color_node_blends_the_colors_of_nodes_in_glsl() {
+    check_node(Language::Glsl, "the_color_node_blends_the_colors_of_nodes_in_glsl");
+}
+
+#[test]
+fn the_color_node_blends_the_colors_of_nodes_in_osl() {
+    check_node(Language::Osl, "the_color_node_blends_the_colors_of_nodes_in_osl");
 }
 
 /// Prints for each file what a module says to its content.

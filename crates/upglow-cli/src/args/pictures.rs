@@ -147,6 +147,10 @@ pub(crate) struct ResultArgs {
     /// By how many stops the light is brighter, -20 to 20 (png only) [default: 0]
     #[arg(long, value_name = "STOPS", value_parser = stops, allow_hyphen_values = true)]
     pub(crate) exposure: Option<f64>,
+    /// Also write a MaterialX document and a USD stage, with a surface for each map or set of tiles: beside OUT with its
+    /// name, or in the folder as materials.mtlx and materials.usda (spectral and radiance only)
+    #[arg(long, conflicts_with_all = ["plan", "tasks"])]
+    pub(crate) mtlx: bool,
     /// Number format of the channels: 16-bit half or 32-bit float (exr and tx only) [default: half]
     #[arg(long, value_name = "NAME", value_parser = word::<SampleName>())]
     pub(crate) sample: Option<SampleName>,

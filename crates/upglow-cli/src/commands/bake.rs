@@ -13,6 +13,7 @@ use upglow_image::{
 };
 use upglow_terminal::{Console, Failure, Report};
 
+use super::documents::MapDocuments;
 use crate::args::{BakeArgs, BakeForm, BakeFormat, SampleName};
 use crate::batch::{Batch, Interpreted};
 use crate::output::{Lines, warn, warn_of_ultraviolet};
@@ -70,7 +71,16 @@ pub(crate) fn run(args: &BakeArgs, console: &Console) -> Result<(), Failure> {
         return bake_plan::run(args, plan, &recipe, &inputs, &outputs, console);
     }
     check_outputs(args, &inputs.pictures, &outputs)?;
+    let documents = args.result.mtlx.then(|| MapDocuments::beside(args.output(), &outputs));
+    for path in documents.iter().flat_map(MapDocuments::paths) {
+        files::check_output_of(path, Some(&args.cube), &RealPictures::new(&inputs.pictures))?;
+    }
     let cube = files::read_cube(&args.cube)?;
+    let whites = whites(args, &recipe.forms, &cube)?;
+    if let Some(documents) = &documents {
+        // Names that do not fit are told before work starts.
+        documents.of(&cube, &inputs.pictures, &outputs, &whites, |_| true)?;
+    }
     let work = Work::new(args, &recipe, &cube)?;
     let mut batch = Batch::new("baked", inputs.pictures.len(), &inputs.left_out);
     let ended = inputs.pictures.iter().try_for_each(|input| {
@@ -78,6 +88,10 @@ pub(crate) fn run(args: &BakeArgs, console: &Console) -> Result<(), Failure> {
         let is_made = |i: usize| args.update && work.bakers[i].is_made(&path, &outputs[i]);
         work.bake(&path, &outputs, is_made, &mut batch, console)
     });
+    if let (Ok(()), Some(documents)) = (&ended, &documents) {
+        let made = documents.of(&cube, &inputs.pictures, &outputs, &whites, Path::is_file)?;
+        batch.add_documents(documents.write(&made)?);
+    }
     batch.finish(console, ended)
 }
 
@@ -185,6 +199,18 @@ impl<'a> Work<'a> {
     }
 }
 
+/// With `--mtlx`, what the perfect diffuser is in the maps of each form.
+fn whites(args: &BakeArgs, forms: &[Form], cube: &Cube) -> Result<Vec<[f64; 3]>, Failure> {
+    if !args.result.mtlx {
+        return Ok(Vec::new());
+    }
+    let white = |form: &Form| match form.white(cube)? {
+        Ok(white) => Some(Ok(white.0)),
+        Err(error) => Some(Err(Failure::option("--mtlx", error))),
+    };
+    forms.iter().filter_map(white).collect()
+}
+
 /// The bands that most other programs use.
 const DEFAULT_BANDS: [u32; 3] = [380, 780, 10];
 
@@ -206,18 +232,20 @@ fn forms(args: &BakeArgs, format: BakeFormat) -> Result<Vec<Form>, Failure> {
     use BakeForm::{Material, Radiance, Spectral};
     let result = &args.result;
     let is_png = format == BakeFormat::Png;
-    let options: [(&str, bool, &[BakeForm]); 6] = [
+    let options: [(&str, bool, &[BakeForm]); 7] = [
         ("--fast", result.fast, &[Material]),
         ("--bands", result.bands.is_some(), &[Spectral]),
         ("--compact", result.compact, &[Spectral]),
         ("--light", !result.lights.is_empty(), &[Radiance]),
         ("--light-ends", result.light.ends.is_some(), &[Radiance]),
         ("--format png", is_png, &[Radiance]),
+        ("--mtlx", result.mtlx, &[Spectral, Radiance]),
     ];
     plan::refuse_ignored("--as", args.form, &options)?;
-    let options: [(&str, bool, &[BakeFormat]); 3] = [
+    let options: [(&str, bool, &[BakeFormat]); 4] = [
         ("--bits", result.bits.is_some(), &[BakeFormat::Png]),
         ("--exposure", result.exposure.is_some(), &[BakeFormat::Png]),
+        ("--mtlx", result.mtlx, &[BakeFormat::Exr, BakeFormat::Tx]),
         ("--sample", result.sample.is_some(), &[BakeFormat::Exr, BakeFormat::Tx]),
     ];
     plan::refuse_ignored("--format", format, &options)?;

@@ -1,22 +1,24 @@
 //! `upglow export`: converts a cube for other programs.
 
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use upglow::{Cube, Model, Node, Sigmoid, Vertex};
-use upglow_color::Choice;
+use upglow_color::{Choice, Illuminant, RgbSpace};
 use upglow_explorer::offline_page;
-use upglow_fit::{BuildError, Preset, fit_coefficients};
-use upglow_shader::{Language, Shader, ShaderError};
+use upglow_fit::{BuildError, Preset, Relighting, fit_coefficients};
+use upglow_image::{ExrDescription, ExrWriter, InteropSpace, Sample};
+use upglow_shader::{ColorTexture, Documents, Language, Shader, ShaderError, color_node};
 use upglow_terminal::{Console, Failure, Report};
 
+use super::documents;
 use super::material_report::{dye_names, unsigned_zeros};
 use crate::args::{ExportArgs, ExportFormat, SlopeLimit, limit_text};
-use crate::files;
-use crate::output::{Lines, quoted, warn, warn_of_own_light};
+use crate::output::{Lines, quoted, warn, warn_of_own_light, warn_of_ultraviolet};
 use crate::pictures::RealPictures;
 use crate::plan::refuse_ignored;
+use crate::{files, plan};
 
 const HEADER: &str = "r,g,b,c0,c1,c2,shift_nm,width_nm,slope_per_nm,dye_a,dye_b,weight,\
                       concentration,density_a,density_b,emission_peak_nm,stokes_shift_nm,de2000";
@@ -38,17 +40,29 @@ struct ExportReport {
 
 pub(crate) fn run(args: &ExportArgs, console: &Console) -> Result<(), Failure> {
     let kind = kind(args)?;
+    let light = match &args.light {
+        Some(name) => Some(plan::light("--light", name, &args.light_file)?),
+        None => None,
+    };
     files::check_ending(&args.output, &[kind.name()])?;
     files::check_output_of(&args.output, Some(&args.file), &RealPictures::default())?;
     let cube = files::read_cube(&args.file)?;
     // A coefficient table has no dyes.
     let has_dyes = kind != ExportFormat::Coeff;
-    let missing_ultraviolet = has_dyes.then(|| warn_of_own_light(&cube)).flatten();
+    let missing_ultraviolet = match &light {
+        Some(light) => warn_of_ultraviolet(cube.model().missing_ultraviolet(light)),
+        None => has_dyes.then(|| warn_of_own_light(&cube)).flatten(),
+    };
     let mut textures = Vec::new();
     let (bytes, nodes) = match kind {
         ExportFormat::Csv => (csv(&cube).into_bytes(), cube.nodes().len()),
         ExportFormat::Coeff => coeff(args, &cube, console)?,
         ExportFormat::Html => (page(args, &cube)?, cube.nodes().len()),
+        ExportFormat::MaterialX => {
+            let (document, written) = material(args, &cube, light, console)?;
+            textures = written;
+            (document, cube.nodes().len())
+        }
         ExportFormat::Shader(language) => {
             let (source, written) = shader(args, &cube, language)?;
             textures = written;
@@ -88,14 +102,72 @@ fn shader(
     })?;
     let paths: Vec<PathBuf> =
         shader.payload.iter().map(|file| args.output.with_file_name(&file.name)).collect();
-    for path in &paths {
-        files::check_output_of(path, Some(&args.file), &RealPictures::default())?;
-    }
+    check_beside(args, &paths)?;
     for (path, file) in paths.iter().zip(&shader.payload) {
         files::write(path, &file.bytes)?;
     }
-    let names = paths.iter().map(|path| path.display().to_string()).collect();
-    Ok((shader.source.into_bytes(), names))
+    Ok((shader.source.into_bytes(), displayed(&paths)))
+}
+
+fn displayed(paths: &[PathBuf]) -> Vec<String> {
+    paths.iter().map(|path| path.display().to_string()).collect()
+}
+
+/// Checks files that are written beside the output.
+fn check_beside(args: &ExportArgs, paths: &[PathBuf]) -> Result<(), Failure> {
+    let check =
+        |path: &PathBuf| files::check_output_of(path, Some(&args.file), &RealPictures::default());
+    paths.iter().try_for_each(check)
+}
+
+/// Writes what a MaterialX document refers to, and the same material for USD; returns the document and the
+/// names of these files. The documents are written last.
+fn material(
+    args: &ExportArgs,
+    cube: &Cube,
+    light: Option<Illuminant>,
+    console: &Console,
+) -> Result<(Vec<u8>, Vec<String>), Failure> {
+    let light = light.unwrap_or_else(|| cube.contract().illuminant.clone());
+    let colors = console.work(args.threads, |_| {
+        let nodes = Relighting::of_nodes(cube);
+        let seen_by = nodes.seen_by(&cube.contract().observer);
+        let seen_by = seen_by.map_err(|error| Failure::file(&args.file, error))?;
+        let colors = seen_by.rgb_over_white(&light);
+        colors.map_err(|error| Failure::option("--light", error))
+    })??;
+    let texture = ColorTexture::new(cube.resolution(), &colors)
+        .map_err(|error| Failure::file(&args.file, error))?;
+    let name = args.output.with_extension("colors.exr");
+    let file = documents::relative(&name, &args.output)?;
+    let stem = args.output.file_stem().unwrap_or_default().to_string_lossy();
+    let space = InteropSpace::linear_id(&cube.contract().space);
+    let documents = Documents::of_cube(&stem, &file, space)
+        .map_err(|error| Failure::file(&args.output, error))?;
+    let node = color_node().map(|file| (args.output.with_file_name(&file.name), file.bytes));
+    let stage = args.output.with_extension("usda");
+    let paths = [name, node[0].0.clone(), node[1].0.clone(), stage];
+    check_beside(args, &paths)?;
+    write_colors(&paths[0], &texture, &cube.contract().space)?;
+    for (path, bytes) in &node {
+        files::write(path, bytes)?;
+    }
+    files::write(&paths[3], documents.usd.as_bytes())?;
+    Ok((documents.materialx.into_bytes(), displayed(&paths)))
+}
+
+/// Writes the colors of nodes as a picture in single precision.
+fn write_colors(path: &Path, texture: &ColorTexture, space: &RgbSpace) -> Result<(), Failure> {
+    let description = ExrDescription::new(texture.size, ["R", "G", "B"])
+        .with_sample(Sample::Float)
+        .with_named_space(space);
+    let write = || {
+        let mut writer = ExrWriter::create(path, description)?;
+        let planes = texture.planes.each_ref().map(Vec::as_slice);
+        writer.write_band(&planes)?;
+        writer.finish()
+    };
+    write().map(drop).map_err(|error| Failure::file(path, error))
 }
 
 /// The format given by the option or by the suffix of the output.
@@ -110,9 +182,12 @@ fn kind(args: &ExportArgs) -> Result<ExportFormat, Failure> {
         Failure::option("--format", message)
     })?;
     let coeff = &[ExportFormat::Coeff][..];
+    let mtlx = &[ExportFormat::MaterialX][..];
     let options = [
         ("--resolution", args.resolution.is_some(), coeff),
         ("--slope-max-per-nm", args.slope_max_per_nm.is_some(), coeff),
+        ("--light", args.light.is_some(), mtlx),
+        ("--light-ends", args.light_file.ends.is_some(), mtlx),
     ];
     refuse_ignored("--format", kind, &options)?;
     Ok(kind)

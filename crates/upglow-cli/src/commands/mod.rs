@@ -7,6 +7,7 @@ mod build;
 mod check;
 mod color;
 mod color_report;
+mod documents;
 mod examples;
 #[cfg(feature = "explore")]
 mod explore;

@@ -3,7 +3,7 @@
 use upglow::{Cube, CubeCurves, ReadCubeError};
 use upglow_color::Grid;
 
-use crate::exr::attribute::{Attribute, Attributes, chromaticities};
+use crate::exr::attribute::{Attribute, Attributes, INTEROP_ID, stated_space};
 use crate::picture::interop::InteropSpace;
 use crate::spectral::attribute_spectrum::{parse_spectrum, print_spectrum};
 use crate::spectral::channel::{LAYOUT_VERSION, LAYOUT_VERSION_VALUE};
@@ -24,9 +24,6 @@ pub(super) const MADE: &str = "upglow.made";
 const MODEL: &str = "upglow.model";
 const MODEL_KIND: &str = "upglowCube";
 
-/// The attribute of the Color Interop Forum that names the color space of a file's color channels.
-pub(crate) const INTEROP_ID: &str = "colorInteropID";
-
 /// The attributes of every form.
 fn common(cube: &Cube, form: &str, channels: &str) -> Attributes {
     Attributes::from([
@@ -43,15 +40,10 @@ pub(super) fn data(cube: &Cube, form: &str, channels: &str) -> Attributes {
     attributes
 }
 
-/// The attributes of a file with colors in the cube's space, linear: the space by its name in the Color
-/// Interop Forum, or by its chromaticities if it has none. Both together would be two statements.
+/// The attributes of a file with colors in the cube's space, linear.
 pub(super) fn colors(cube: &Cube, form: &str, channels: &str) -> Attributes {
     let mut attributes = common(cube, form, channels);
-    let space = &cube.contract().space;
-    match InteropSpace::linear_id(space) {
-        Some(id) => attributes.insert(INTEROP_ID.into(), id.into()),
-        None => attributes.insert("chromaticities".into(), chromaticities(space)),
-    };
+    attributes.extend([stated_space(&cube.contract().space)]);
     attributes
 }
 

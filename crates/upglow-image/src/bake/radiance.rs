@@ -2,7 +2,7 @@
 
 use upglow::Cube;
 use upglow_color::rounding::to_single;
-use upglow_color::{Grid, Illuminant, Matrix3};
+use upglow_color::{Colorimetry, Grid, Illuminant, Matrix3};
 use upglow_fit::KindCounts;
 
 use super::attributes;
@@ -22,8 +22,7 @@ pub(super) struct RadianceMaker<'c> {
 
 impl<'c> RadianceMaker<'c> {
     pub(super) fn new(cube: &'c Cube, light: Illuminant) -> Self {
-        let contract = cube.contract();
-        let colorimetry = contract.on(Grid::FIT).relit(&contract.observer, &light);
+        let colorimetry = colorimetry(cube, &light);
         Self {
             cube,
             blends: Blends::new(cube, &colorimetry),
@@ -45,6 +44,12 @@ impl<'c> RadianceMaker<'c> {
     pub(super) fn kinds(&self, rgb: &[[f32; 3]]) -> KindCounts {
         self.blends.kinds(rgb)
     }
+}
+
+/// The cube's colorimetry under a light that brings as much power as its own.
+pub(super) fn colorimetry(cube: &Cube, light: &Illuminant) -> Colorimetry {
+    let contract = cube.contract();
+    contract.on(Grid::FIT).relit(&contract.observer, light)
 }
 
 /// Red, green and blue: also a preview for programs without spectra.

@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 use upglow_color::RgbSpace;
 use upglow_color::rounding::to_single;
 
+use crate::picture::interop::InteropSpace;
+
 /// The attributes of one image, by name: a file holds each once.
 pub(crate) type Attributes = BTreeMap<String, Attribute>;
 
@@ -56,6 +58,18 @@ pub(crate) fn chromaticities(space: &RgbSpace) -> Attribute {
     let [red, green, blue] = space.primaries();
     let xy = [red, green, blue, space.white()].map(|c| c.map(to_single));
     Attribute::singles("chromaticities", xy.as_flattened())
+}
+
+/// The attribute of the Color Interop Forum that names the color space of a file's color channels.
+pub(crate) const INTEROP_ID: &str = "colorInteropID";
+
+/// The attribute that states the space of linear colors, and its name: its ID in the Color Interop Forum, or its
+/// chromaticities if it has none. Both together would be two statements.
+pub(crate) fn stated_space(space: &RgbSpace) -> (String, Attribute) {
+    match InteropSpace::linear_id(space) {
+        Some(id) => (INTEROP_ID.into(), id.into()),
+        None => ("chromaticities".into(), chromaticities(space)),
+    }
 }
 
 impl<T: Into<String>> From<T> for Attribute {

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use upglow::Aside;
 use upglow_color::RgbSpace;
 
-use super::attribute::{Attributes, chromaticities};
+use super::attribute::{Attributes, chromaticities, stated_space};
 use super::header::{Arrangement, Channel, MAX_SIDE, Sample, Window, is_name, is_reserved, print};
 
 /// How blocks of rows are compressed; all methods are lossless.
@@ -76,6 +76,14 @@ impl ExrDescription {
     #[must_use]
     pub fn with_space(mut self, space: &RgbSpace) -> Self {
         self.attributes.insert("chromaticities".into(), chromaticities(space));
+        self
+    }
+
+    /// The same image; the file states this RGB space as baked files do: by its name in the Color Interop Forum, or by
+    /// its chromaticities if it has none.
+    #[must_use]
+    pub fn with_named_space(mut self, space: &RgbSpace) -> Self {
+        self.attributes.extend([stated_space(space)]);
         self
     }
 }

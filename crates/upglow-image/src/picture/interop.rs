@@ -43,7 +43,7 @@ impl InteropSpace {
     pub(crate) const DATA: &str = "data";
 
     /// The name of linear colors in an RGB space, if it has one.
-    pub(crate) fn linear_id(space: &RgbSpace) -> Option<&'static str> {
+    pub fn linear_id(space: &RgbSpace) -> Option<&'static str> {
         let linear = Some(Self::Color(space.clone(), Encoding::Linear));
         IDS.into_iter().find(|id| Self::of_id(id) == linear)
     }

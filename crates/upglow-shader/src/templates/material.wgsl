@@ -1,10 +1,16 @@
 // One of the four materials that a color is mixed of.
 struct UpglowCorner {
     weight: f32, // its share, 0 to 1
+//@if place
+    red: i32, // number of its node along red
+    row: i32, // along green, and along blue times the nodes of an axis
+//@end
+//@if material
     edge_nm: f32, // where its reflectance is steepest
     level: f32, // the parabola there
     rise: f32, // the parabola's coefficient of the distance from there, 1/nm
     bend: f32, // and of its square, 1/nm²
+//@end
 //@if js
     node: i32, // number of its node in the cube, red fastest
 //@end
@@ -51,13 +57,21 @@ fn upglow_within(value: f32, low: f32, high: f32) -> f32 {
 }
 
 fn upglow_corner(weight: f32, red: i32, row: i32) -> UpglowCorner {
+//@if material
     let parabola: vec4f = upglow_node(2 * red, row);
+//@end
     var corner: UpglowCorner;
     corner.weight = weight;
+//@if place
+    corner.red = red;
+    corner.row = row;
+//@end
+//@if material
     corner.edge_nm = parabola.x;
     corner.level = parabola.y;
     corner.rise = parabola.z;
     corner.bend = parabola.w;
+//@end
 //@if js
     corner.node = row * UPGLOW_RESOLUTION + red;
 //@end
@@ -87,8 +101,13 @@ fn upglow_corner(weight: f32, red: i32, row: i32) -> UpglowCorner {
 
 // The material of a linear color in the cube's RGB space. What is outside 0 to 1 counts as the
 // nearer end, and what is no number as 0.
+//@if material
 fn upglow_look_up(rgb: vec3f) -> UpglowMaterial {
     let n: i32 = UPGLOW_RESOLUTION;
+//@end
+//@if place
+fn upglow_look_up(rgb: vec3f, n: i32) -> UpglowMaterial {
+//@end
     let red: f32 = f32(n - 1) * upglow_within(rgb[0], 0.0, 1.0);
     let green: f32 = f32(n - 1) * upglow_within(rgb[1], 0.0, 1.0);
     let blue: f32 = f32(n - 1) * upglow_within(rgb[2], 0.0, 1.0);

@@ -76,6 +76,12 @@ def run(folder):
     texels = np.zeros((ROWS, COLUMNS, QUERY), np.float32)
     texels.reshape(-1)[: queries.size] = queries
     write_tiff(folder / "queries.tif", texels.reshape(ROWS, 2 * COLUMNS, 4))
+    payload = folder / "shader.textures"
+    if payload.exists():
+        # What the node reads: the first texture of a payload.
+        width, height = struct.unpack_from("<2I", payload.read_bytes(), 16)
+        texels = np.fromfile(payload, np.float32, 4 * width * height, offset=64)
+        write_tiff(folder / "colors.tif", texels.reshape(height, width, 4))
     bytecode = folder / "main.oso"
     assert _cycles.osl_compile(str(folder / "main.osl"), str(bytecode)), folder
     scene = scene_of(bytecode)
