@@ -8,6 +8,7 @@ use std::path::Path;
 use serde_json::Value;
 use support::{Folder, one_line};
 use upglow_color::RgbSpace;
+use upglow_color::rounding::to_single;
 use upglow_image::{ExrDescription, ExrWriter, Sample};
 
 /// A picture of float samples; `says` whether it is in ACEScg.
@@ -569,6 +570,33 @@ fn maps_come_with_documents_that_name_them() {
     assert_eq!(line, "--mtlx: given with --as material, expected --as spectral or radiance");
     let line = one("x.png --as radiance --light A");
     assert_eq!(line, "--mtlx: given with --format png, expected --format exr or tx");
+}
+
+#[test]
+fn the_node_and_the_maps_show_the_same_colors() {
+    // Single precision of colors below 2, in the map and of the blend.
+    const ROUNDING: f64 = 1e-5;
+    let folder = desk();
+    let cube = upglow::Cube::read(folder.path().join("cube")).unwrap();
+    let n = cube.resolution();
+    let nodes: Vec<[f32; 3]> = (0..n.pow(3)).map(|i| cube.node_rgb(i).0.map(to_single)).collect();
+    picture(&folder, "nodes.exr", n, &nodes, true);
+    folder.done("bake cube nodes.exr -o map.exr --as radiance --light A --sample float --mtlx");
+    folder.done("export cube node.mtlx --light A");
+    let document = String::from_utf8(folder.read("map.mtlx")).unwrap();
+    let (_, after) = document.split_once("name=\"in2\" type=\"color3\" value=\"").unwrap();
+    let white: Vec<f64> =
+        after.split('"').next().unwrap().split(", ").map(|v| v.parse().unwrap()).collect();
+    let read = |name: &str| {
+        let mut picture = upglow_image::Picture::open(folder.path().join(name)).unwrap();
+        picture.read_band(usize::MAX).unwrap().unwrap().rgb
+    };
+    let (map, node) = (read("map.exr"), read("node.colors.exr"));
+    assert_eq!(2 * map.len(), node.len());
+    for (map, node) in map.iter().zip(node) {
+        let error = (0..3).map(|k| (f64::from(map[k]) / white[k] - f64::from(node[k])).abs());
+        assert!(error.fold(0.0, f64::max) < ROUNDING, "{map:?} {white:?} {node:?}");
+    }
 }
 
 #[test]
