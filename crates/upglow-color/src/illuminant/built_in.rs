@@ -45,8 +45,8 @@ impl Illuminant {
     /// The built-in lights as a list for messages and help.
     pub const FAMILIES: &str = "D50, D55, D60, D65, D75, A, E, FL1 to FL12, FL3.1 to FL3.15, \
         HP1 to HP5, LED-B1 to LED-B5, LED-BH1, LED-RGB1, LED-V1, LED-V2, ID50, ID65, M0, M1, M2, \
-        1000K to 100000K (blackbody), D4000K to D25000K (daylight), and any of them behind a filter that \
-        takes all below 320 to 500 nm, such as D65-cut400";
+        1000K to 100000K (blackbody), D4000K to D25000K (daylight), D65-cut400 (any of them without power \
+        below 320 to 500 nm)";
 
     /// Every name of a built-in light that is not made of a temperature.
     #[must_use]
