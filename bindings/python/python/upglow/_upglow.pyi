@@ -18,6 +18,7 @@ __all__ = [
     "Metamers",
     "Model",
     "Observer",
+    "Reduced",
     "__version__",
     "answer",
     "build",
