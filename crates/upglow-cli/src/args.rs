@@ -221,8 +221,8 @@ pub(crate) struct ExportArgs {
     /// File to write
     pub(crate) output: PathBuf,
     /// csv: one line per node; coeff: reflectances only, for Mitsuba 3 and colour-science; html: a page
-    /// to explore it with, offline; mtlx: a MaterialX surface with its color under --light, for renderers of
-    /// RGB, and the same for USD; js: a module of JavaScript, and the others shader source, with
+    /// to explore it with, offline; mtlx: a MaterialX surface with its color under --light, for RGB
+    /// renderers, and the same for USD; js: a module of JavaScript, and the others shader source, with
     /// textures beside them [default: by the suffix of the output]
     #[arg(long, value_name = "NAME", value_parser = word::<ExportFormat>())]
     pub(crate) format: Option<ExportFormat>,

@@ -122,9 +122,7 @@ impl PaintReport {
             known: known.collect(),
         }
     }
-}
 
-impl PaintReport {
     /// Whether the paint fluoresces, and what a wrong assumption costs.
     pub(crate) fn fluoresces(&self) -> String {
         let probability = self.fluorescent_probability;

@@ -1,9 +1,11 @@
 //! Plans of bakes and their tasks.
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
 
+#[path = "../../upglow-image/src/python.rs"]
+mod python;
 mod support;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -179,24 +181,9 @@ fn after_a_kill_only_what_is_missing_is_done_and_all_bytes_are_the_same() {
     assert!(content(&out) == content(&folder.path().join("one")));
 }
 
-/// An interpreter with `openjd-cli`, if there is one.
-fn openjd() -> Option<PathBuf> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let candidates = [
-        std::env::var_os("UPGLOW_PYTHON").map(PathBuf::from),
-        Some(root.join("target/python/bin/python")),
-        Some("python3".into()),
-    ];
-    let can_import = |python: &PathBuf| {
-        let import = Command::new(python).args(["-c", "import openjd.cli"]).output();
-        import.is_ok_and(|output| output.status.success())
-    };
-    candidates.into_iter().flatten().find(can_import)
-}
-
 /// Runs the job of so many pictures with Open Job Description's own program.
 fn run_job(count: usize, options: &str) {
-    let Some(python) = openjd() else {
+    let Some(python) = python::python("openjd.cli") else {
         eprintln!("skipped: no Python with openjd-cli, see tests/farm/requirements.txt");
         return;
     };

@@ -116,7 +116,7 @@ impl ReducedBasis {
         let daylight = Contract { illuminant: Illuminant::default(), ..contract.clone() };
         let daylight = Colorimetry::try_new(&daylight, grid)?;
         let ultraviolet_of_daylight = seen_by_u(&daylight).white().0[0];
-        let power = powers(own.wavelengths_nm(), own.irradiance());
+        let power = Self::parts_of(own.wavelengths_nm(), own.irradiance());
         let total: f64 = own.irradiance().iter().sum();
         for (part, power) in ["blue", "green", "red"].into_iter().zip(&power) {
             let share = power.iter().sum::<f64>() / total;
@@ -157,7 +157,20 @@ impl ReducedBasis {
     /// Power of the four parts of a light of this power at wavelengths, nm; `[part][wavelength]`.
     #[must_use]
     pub fn parts_of(wavelengths_nm: &[f64], power: &[f64]) -> [Vec<f64>; 4] {
-        powers(wavelengths_nm, power)
+        let shares: Vec<[f64; 4]> = wavelengths_nm.iter().map(|nm| Self::shares_at(*nm)).collect();
+        let each = || shares.iter().zip(power);
+        let ultraviolet: f64 = each().map(|(share, power)| share[3] * power).sum();
+        if ultraviolet >= LEAST_ULTRAVIOLET * power.iter().sum::<f64>() {
+            return [0, 1, 2, 3].map(|k| each().map(|(share, power)| share[k] * power).collect());
+        }
+        let of = |part: usize| -> Vec<f64> {
+            match part {
+                0 => each().map(|([blue, .., u], power)| (blue + u) * power).collect(),
+                3 => shares.iter().map(|share| share[3]).collect(),
+                k => each().map(|(share, power)| share[k] * power).collect(),
+            }
+        };
+        [0, 1, 2, 3].map(of)
     }
 
     /// A light as four numbers. It is scaled so that a perfect diffuser has Y = 1; light too dark to see by, such
@@ -197,24 +210,6 @@ impl ReducedBasis {
 
 fn seen_by_u(sums: &Colorimetry) -> Colorimetry {
     sums.seen_by(ReducedBasis::ultraviolet_at)
-}
-
-fn powers(wavelengths_nm: &[f64], power: &[f64]) -> [Vec<f64>; 4] {
-    let shares: Vec<[f64; 4]> =
-        wavelengths_nm.iter().map(|nm| ReducedBasis::shares_at(*nm)).collect();
-    let each = || shares.iter().zip(power);
-    let ultraviolet: f64 = each().map(|(share, power)| share[3] * power).sum();
-    if ultraviolet >= LEAST_ULTRAVIOLET * power.iter().sum::<f64>() {
-        return [0, 1, 2, 3].map(|k| each().map(|(share, power)| share[k] * power).collect());
-    }
-    let of = |part: usize| -> Vec<f64> {
-        match part {
-            0 => each().map(|([blue, .., u], power)| (blue + u) * power).collect(),
-            3 => shares.iter().map(|share| share[3]).collect(),
-            k => each().map(|(share, power)| share[k] * power).collect(),
-        }
-    };
-    [0, 1, 2, 3].map(of)
 }
 
 #[cfg(test)]

@@ -68,7 +68,7 @@ impl Add for ReducedMatrix {
 ///
 /// Four numbers do not tell the power of a light. How strong it is, is therefore defined as
 /// ‖v‖² = (x − y)² + y² + (3z)² + (4u)², where x, y, z, u are X, Y, Z, U relative to those of the contract's
-/// light. No matrix returns a light stronger than it came, in whichever direction of the four it lies: so no
+/// light. No matrix returns a light stronger than it came, whatever its four numbers are: so no
 /// number of reflections, by whichever materials, makes light grow.
 ///
 /// Most materials keep to that by themselves. What A·B⁻¹ adds where a steep curve does not is taken away

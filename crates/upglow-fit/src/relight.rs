@@ -202,7 +202,7 @@ impl SeenBy<'_> {
         View { seen, appearances }
     }
 
-    /// What a renderer of RGB multiplies with the RGB of a light to get the colors under it: each over that of the
+    /// What an RGB renderer multiplies with the RGB of a light to get the colors under it: each over that of the
     /// perfect diffuser, component by component, in the RGB space of the cube.
     ///
     /// # Errors
@@ -228,7 +228,7 @@ pub struct View {
     pub appearances: Vec<Appearance>,
 }
 
-/// A light whose RGB are not all positive: no renderer of RGB can show it.
+/// A light whose RGB are not all positive: no RGB renderer can show it.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("white is {:.4}, {:.4}, {:.4} under this light, expected RGB above 0", rgb[0], rgb[1], rgb[2])]
 pub struct ColoredLightError {

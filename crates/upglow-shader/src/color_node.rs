@@ -1,4 +1,4 @@
-//! The color of a cube's material under one light, as a node for renderers of RGB.
+//! The color of a cube's material under one light, as a node for RGB renderers.
 
 use upglow_color::LinearRgb;
 use upglow_color::rounding::to_single;

@@ -19,7 +19,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! For renderers of RGB, [`color_node`] is a node that returns the color of a cube's material under a light,
+//! For RGB renderers, [`color_node`] is a node that returns the color of a cube's material under a light,
 //! [`ColorTexture`] the numbers that it reads, and [`Documents`] a surface with it in MaterialX and USD.
 //!
 //! Out of scope: reading or writing files, talking to a driver, how surfaces scatter over angles.

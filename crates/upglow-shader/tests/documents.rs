@@ -1,4 +1,4 @@
-//! Documents for renderers of RGB, as MaterialX and USD read them.
+//! Documents for RGB renderers, as MaterialX and USD read them.
 
 #![expect(clippy::unwrap_used, reason = "a test fails where its files cannot be made")]
 

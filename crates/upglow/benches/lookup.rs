@@ -15,9 +15,7 @@ fn main() {
 }
 
 /// Unrelated colors, as of a path tracer's hits.
-#[divan::bench(args = [32, 64])]
-fn random(bencher: Bencher, resolution: usize) {
-    let table = cube(resolution, Kind::Film).lookup_table();
+fn unrelated<T>(bencher: Bencher, answer: impl Fn([f32; 3]) -> T) {
     let mut random = Random(1);
     // More colors than the caches' neighborhoods can be learned for.
     let rgb: Vec<[f32; 3]> = (0..65 * CALLS).map(|_| random.rgb()).collect();
@@ -25,9 +23,15 @@ fn random(bencher: Bencher, resolution: usize) {
     bencher.counter(ItemsCount::new(CALLS)).bench_local(|| {
         next = (next + CALLS) % (64 * CALLS);
         for &rgb in &rgb[next..next + CALLS] {
-            let _ = black_box(&table.lookup(rgb));
+            let _ = black_box(&answer(rgb));
         }
     });
+}
+
+#[divan::bench(args = [32, 64])]
+fn random(bencher: Bencher, resolution: usize) {
+    let table = cube(resolution, Kind::Film).lookup_table();
+    unrelated(bencher, |rgb| table.lookup(rgb));
 }
 
 /// Colors that change little from one to the next, as along a texture's rows.
@@ -53,15 +57,7 @@ fn reduced_matrix(bencher: Bencher, resolution: usize) {
     let cube = cube(resolution, Kind::Film);
     let basis = ReducedBasis::try_new(cube.contract(), Grid::FIT).expect("daylight has every part");
     let table = cube.reduced_table(&basis);
-    let mut random = Random(1);
-    let rgb: Vec<[f32; 3]> = (0..65 * CALLS).map(|_| random.rgb()).collect();
-    let mut next = 0;
-    bencher.counter(ItemsCount::new(CALLS)).bench_local(|| {
-        next = (next + CALLS) % (64 * CALLS);
-        for &rgb in &rgb[next..next + CALLS] {
-            let _ = black_box(&table.matrix(rgb));
-        }
-    });
+    unrelated(bencher, |rgb| table.matrix(rgb));
 }
 
 /// The double-precision path that the table replaces.

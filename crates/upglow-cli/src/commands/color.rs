@@ -27,13 +27,10 @@ pub(crate) fn run(args: &ColorArgs, console: &Console) -> Result<(), Failure> {
         return Err(Failure::option("--output", message));
     }
     let rgb = plan::color([&args.red, &args.green, &args.blue], args.direct || is_search)?;
-    if let Some(output) = &args.output {
-        files::check_ending(output, files::CUBE)?;
+    for (output, endings) in [(&args.output, files::CUBE), (&args.plot, files::SVG)] {
+        let Some(output) = output else { continue };
+        files::check_ending(output, endings)?;
         files::check_output_of(output, Some(&args.file), &RealPictures::default())?;
-    }
-    if let Some(plot) = &args.plot {
-        files::check_ending(plot, files::SVG)?;
-        files::check_output_of(plot, Some(&args.file), &RealPictures::default())?;
     }
     let lights = plan::lights_to_see(&args.lights, &args.light)?;
     let known = known_colors(&args.known, &args.light)?;

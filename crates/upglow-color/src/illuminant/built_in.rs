@@ -72,7 +72,7 @@ impl Illuminant {
     /// # Errors
     ///
     /// [`IlluminantError::Unknown`] lists the known names; [`IlluminantError::Temperature`] if there is
-    /// no formula for the temperature; [`IlluminantError::Cut`] if the filter is none for ultraviolet.
+    /// no formula for the temperature; [`IlluminantError::Cut`] if the filter begins elsewhere.
     ///
     /// # Source
     ///

@@ -82,7 +82,7 @@ def validate_materialx(paths):
 
 
 def check_shader(stage, document, shader):
-    """The shader is a node that MaterialX knows, with the same inputs and colors spaces."""
+    """The shader is a node that MaterialX knows, with the same inputs and color spaces."""
     from pxr import UsdShade
 
     definition = document.getNodeDef(shader.GetIdAttr().Get())

@@ -60,11 +60,8 @@ impl<'w> Made<'w> {
 
     /// The mean as a matrix on the axes of `measured`.
     pub(crate) fn matrix_like(&self, measured: &DonaldsonMatrix) -> DonaldsonMatrix {
-        let matrix = |&(weight, material): &(f64, Material)| {
-            (weight, Mixture::of(&self.model, material).matrix_like(measured))
-        };
-        let parts: Vec<(f64, DonaldsonMatrix)> = self.parts.iter().map(matrix).collect();
-        measured.with_factors(|o, i| parts.iter().map(|(w, part)| w * part.factors()[o][i]).sum())
+        let mixture = Mixture::of_parts(&self.model, &self.parts);
+        mixture.expect("one to four materials").matrix_like(measured)
     }
 
     /// Whether a dye is in it.
