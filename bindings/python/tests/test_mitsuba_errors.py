@@ -91,21 +91,3 @@ def test_invalid_depths_are_refused() -> None:
     told = message({"type": "upglow_path", "max_depth": -2})
     assert told.endswith("max_depth is -2, expected 0 or more or -1 for no limit")
     assert message({"type": "upglow_path", "rr_depth": 0}).endswith("expected 1 or more")
-
-
-def test_fluorescence_that_would_be_lost_is_warned_of(path) -> None:
-    bump = {
-        "type": "bumpmap",
-        "texture": {
-            "type": "bitmap",
-            "bitmap": mi.Bitmap(np.ones((2, 2, 1), np.float32)),
-            "raw": True,
-        },
-        "bsdf": {"type": "upglow", "cube": path, "color": [0.4, 1.0, 0.8]},
-    }
-    scene = mi.load_dict(host.plane(bump, {"type": "uniform", "value": 1.0}))
-    from upglow.mitsuba._lamps import Lamps
-    from upglow.mitsuba._wrappers import fluorescent_surfaces
-
-    with pytest.warns(UserWarning, match="fluorescence inside BumpMap is lost"):
-        assert fluorescent_surfaces(scene, Lamps(scene)) == []

@@ -100,34 +100,120 @@ def test_a_closed_furnace_has_the_series_of_its_bounces(cube, name) -> None:
     host.assert_mean(host.picture(scene, spp=512), host.xyz_of(total))
 
 
-def wrapped(cube: upglow.Cube, kind: str) -> tuple[dict, float]:
-    """A surface inside another, and its share of the result; the rest is black."""
-    inner, black = surface(cube, MINT), {"type": "diffuse", "reflectance": 0.0}
-    both = {"front": inner, "back": {**inner}}
-    return {
-        "twosided": ({"type": "twosided", "bsdf": inner}, 1.0),
-        "twosided back": ({"type": "twosided", "front": black, "back": inner}, 1.0),
-        "blendbsdf": ({"type": "blendbsdf", "weight": 0.25, "a": inner, "b": black}, 0.75),
-        "mask": ({"type": "mask", "opacity": 0.5, "bsdf": inner}, 0.5),
-        "twosided blend": (
-            {"type": "twosided", "x": {"type": "blendbsdf", "weight": 0.5, **both}},
-            1,
-        ),
-    }[kind]
+def texture(numbers: np.ndarray) -> dict:
+    """A picture of numbers, which reaches from end to end without repeating."""
+    bitmap = mi.Bitmap(np.ascontiguousarray(numbers, np.float32))
+    return {"type": "bitmap", "raw": True, "bitmap": bitmap, "wrap_mode": "clamp"}
 
 
-@pytest.mark.parametrize(
-    "kind", ["twosided", "twosided back", "blendbsdf", "mask", "twosided blend"]
-)
-def test_fluorescence_reaches_through_the_renderer_s_wrappers(cube, kind) -> None:
-    light = lights()["D65"]
-    bsdf, share = wrapped(cube, kind)
+def facing(normal: list[float], inner: dict) -> dict:
+    """A surface with a constant normal other than that of its shape."""
+    numbers = np.full((2, 2, 3), 0.5 + 0.5 * np.array(normal))
+    return {"type": "normalmap", "normalmap": texture(numbers), "bsdf": inner}
+
+
+def bumpy(heights: np.ndarray, inner: dict) -> dict:
+    return {"type": "bumpmap", "arbitrary": texture(heights[..., None]), "bsdf": inner}
+
+
+FLAT = np.ones((2, 2))
+WRAPPED = {
+    "twosided": lambda inner, _: ({"type": "twosided", "bsdf": inner}, 1.0),
+    "twosided back": lambda inner, black: ({"type": "twosided", "a": black, "b": inner}, 1.0),
+    "blendbsdf": lambda inner, black: (
+        {"type": "blendbsdf", "weight": 0.25, "a": inner, "b": black},
+        0.75,
+    ),
+    "mask": lambda inner, _: ({"type": "mask", "opacity": 0.5, "bsdf": inner}, 0.5),
+    "twosided blend": lambda inner, _: (
+        {
+            "type": "twosided",
+            "x": {"type": "blendbsdf", "weight": 0.5, "a": inner, "b": {**inner}},
+        },
+        1.0,
+    ),
+    "bumpmap": lambda inner, _: (bumpy(FLAT, inner), 1.0),
+    "normalmap": lambda inner, _: (facing([0, 0, 1], inner), 1.0),
+    "masked blend of bumps": lambda inner, black: (
+        {
+            "type": "mask",
+            "opacity": 0.5,
+            "x": {
+                "type": "blendbsdf",
+                "weight": 0.25,
+                "a": bumpy(FLAT, inner),
+                "b": facing([0, 0, 1], {"type": "twosided", "a": inner, "b": black}),
+            },
+        },
+        0.5,
+    ),
+}
+"""Surfaces in others, from one that fluoresces and a black one; and the share of the first in the result."""
+
+
+@pytest.mark.parametrize("kind", WRAPPED)
+@pytest.mark.parametrize("name", ["D65", "lamp"])
+def test_fluorescence_reaches_through_the_renderer_s_wrappers(cube, kind, name) -> None:
+    light = lights()[name]
+    bsdf, share = WRAPPED[kind](surface(cube, MINT), {"type": "diffuse", "reflectance": 0.0})
     scene = host.plane(bsdf, light, max_depth=3)
     if kind == "twosided back":
         scene["plane"]["flip_normals"] = True
-    behind = host.light_of(light) * 0.5 if kind == "mask" else 0
+    behind = host.light_of(light) * 0.5 if "mask" in kind else 0
     expected = host.xyz_of(share * leaving(cube, MINT, light) + behind)
     host.assert_mean(host.picture(scene), expected)
+
+
+def from_the_side(bsdf: dict, light: dict, **integrator) -> dict:
+    """A plane under light of one direction, 37 degrees from its normal."""
+    scene = host.plane(bsdf, light, **integrator)
+    scene["light"] = {"type": "directional", "irradiance": light, "direction": [-0.6, 0, -0.8]}
+    return scene
+
+
+@pytest.mark.parametrize("kind", ["bumpmap", "normalmap"])
+def test_fluorescence_is_shaded_by_the_normals_that_shade_reflection(cube, kind, rng) -> None:
+    light, heights = lights()["lamp"], 4 * rng.random((6, 6))
+
+    def turned(inner: dict) -> dict:
+        return facing([0.52, 0.2, 0.83], inner) if kind == "normalmap" else bumpy(heights, inner)
+
+    one = {"type": "uniform", "value": 1.0}
+    white = {"type": "diffuse", "reflectance": one}
+    shading, flat = (
+        host.picture(from_the_side(bsdf, one, type="path"))[:, 1:2]
+        for bsdf in (turned(white), white)
+    )
+    cosines = 0.8 * shading / flat
+    assert np.abs(cosines - 0.8).mean() > 0.05
+    found = host.picture(from_the_side(turned(surface(cube, MINT)), light), spp=1024)
+    is_lit = cosines[:, 0] > 0.3
+    expected = host.xyz_of(leaving(cube, MINT, light)) / np.pi
+    host.assert_mean(found[is_lit] / cosines[is_lit], expected)
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        {"type": "principled", "roughness": 0.3},
+        {"type": "roughconductor", "alpha": 0.2},
+        {"type": "conductor"},
+    ],
+    ids=["principled", "roughconductor", "conductor"],
+)
+def test_a_blend_with_another_kind_of_surface_is_the_sum_of_both(cube, other) -> None:
+    light = lights()["lamp"]
+    inner = surface(cube, MINT)
+    blend = {"type": "blendbsdf", "weight": 0.4, "a": inner, "b": other}
+    means, errors = [], []
+    for bsdf in (blend, inner, other):
+        pixels = host.picture(host.plane(bsdf, light), spp=1024)
+        means.append(pixels.mean(axis=0))
+        errors.append(pixels.std(axis=0, ddof=1) / len(pixels) ** 0.5)
+    shares = np.array([1, -0.6, -0.4])
+    allowed = host.ERRORS * np.linalg.norm(shares[:, None] * np.array(errors), axis=0)
+    assert (np.abs(shares @ np.array(means)) < allowed).all(), (means, errors)
+    assert (allowed < 0.05 * means[0].max()).all(), f"too noisy to say anything: {errors}"
 
 
 def test_lights_without_size_excite_as_others_do(cube) -> None:
@@ -163,7 +249,7 @@ def test_without_fluorescence_it_is_path_sample_by_sample(hides) -> None:
 
 def test_nothing_of_a_scene_is_kept(cube) -> None:
     from upglow.mitsuba._lamps import Lamps
-    from upglow.mitsuba._wrappers import fluorescent_surfaces
+    from upglow.mitsuba._glow import fluorescent_surfaces
 
     emitter = {"type": "area", "radiance": lights()["D65"]}
     scene = host.plane(surface(cube, MINT), lights()["D65"])

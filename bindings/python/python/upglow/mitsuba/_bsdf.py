@@ -6,9 +6,9 @@ from typing import Any
 
 from ._color import Color
 from ._cube_source import cube_named, on_device
+from ._glow import Draw, is_asked, is_fluorescence
 from ._host import dr, mi
 from ._lamps import Lamps
-from ._wrappers import Fluorescence
 
 
 def bsdf_class() -> Any:
@@ -38,21 +38,20 @@ def bsdf_class() -> Any:
             """Whether the cube has fluorescent materials."""
             return self._cube.is_fluorescent
 
-        def fluorescence(self, lamps: Lamps | None) -> Fluorescence:
+        def fluorescence(self, lamps: Lamps | None) -> Draw:
             """A function that draws fluorescence of this surface in a scene with these lamps.
 
             It takes a surface interaction, two random numbers in 0 to 1, and a mask. For the
             wavelengths of the interaction, which leave, it returns throughputs and the wavelengths
             (nm) of incident light. A throughput is that of the whole hemisphere, as a reflectance
-            is; 0 on the back.
+            is. `eval` has the lobe of directions, where a context asks for it.
             """
             draw = self._cube.fluorescence(lamps)
 
             def drawn(si: Any, u: Any, active: Any) -> tuple[Any, Any]:
                 color = self._color.at(si, active)
-                throughput, nm = draw(color, si.wavelengths, u.x, u.y, active)
-                is_front = mi.Frame3f.cos_theta(si.wi) > 0
-                return dr.select(is_front, throughput, 0), dr.select(is_front, nm, si.wavelengths)
+                moved: tuple[Any, Any] = draw(color, si.wavelengths, u.x, u.y, active)
+                return moved
 
             return drawn
 
@@ -71,9 +70,11 @@ def bsdf_class() -> Any:
             return drawn, dr.select(active & (drawn.pdf > 0), weight, 0)
 
         def eval(self, ctx: Any, si: Any, wo: Any, active: Any = True) -> Any:
-            active = active & self._is_enabled(ctx) & _are_in_front(si, wo)
-            value = self._reflectance(si, active) * (mi.Frame3f.cos_theta(wo) / dr.pi)
-            return dr.select(active, value, 0)
+            is_glow = is_fluorescence(ctx)
+            is_answer = is_asked(self) if is_glow else self._is_enabled(ctx)
+            active = active & is_answer & _are_in_front(si, wo)
+            share = mi.Spectrum(1) if is_glow else self._reflectance(si, active)
+            return dr.select(active, share * (mi.Frame3f.cos_theta(wo) / dr.pi), 0)
 
         def pdf(self, ctx: Any, si: Any, wo: Any, active: Any = True) -> Any:
             active = active & self._is_enabled(ctx) & _are_in_front(si, wo)

@@ -9,9 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from ._glow import Glow, fluorescent_surfaces, no_fluorescence
 from ._host import dr, is_scalar, mi, ratio
 from ._lamps import Lamps
-from ._wrappers import Fluorescence, fluorescent_surfaces, no_fluorescence
 
 _ENDLESS = 2**31 - 1
 """The depth of paths that only Russian roulette ends."""
@@ -19,8 +19,8 @@ _ENDLESS = 2**31 - 1
 _MOST_LIKELY = 0.95
 """Russian roulette ends at least one path in twenty, as in Mitsuba's own integrators."""
 
-_Facts = tuple[Lamps, list[tuple[Any, Fluorescence]]]
-"""The lamps of a scene, and its fluorescent BSDFs, each with the function that draws."""
+_Facts = tuple[Lamps, list[Glow]]
+"""The lamps of a scene, and its fluorescent BSDFs."""
 
 
 def integrator_class() -> Any:
@@ -125,6 +125,18 @@ class _State:
     """Whether the path continues."""
 
 
+@dataclass
+class _Moved:
+    """What a surface re-radiates to the wavelengths of a path."""
+
+    throughput: Any
+    """Factors of the light at `nm`, of the whole hemisphere."""
+    nm: Any
+    """Wavelengths of that light, nm."""
+    part: Any
+    """The BSDF in the surface that re-radiates, by its number in `Glow`."""
+
+
 class _Walk:
     """Path tracing in one scene."""
 
@@ -166,9 +178,9 @@ class _Walk:
             state.radiance, state.active = radiance, False
             return state
         bsdf = si.bsdf(state.ray)
-        moved, moved_nm = self._fluorescence(bsdf, si, going)
-        lit = self._lit(state, si, bsdf, moved, moved_nm, going)
-        after = self._scattered(state, si, bsdf, moved, moved_nm, going)
+        moved = self._fluorescence(bsdf, si, going)
+        lit = self._lit(state, si, bsdf, moved, going)
+        after = self._scattered(state, si, bsdf, moved, going)
         after.radiance = radiance + lit
         return after
 
@@ -186,25 +198,29 @@ class _Walk:
         weight = _weight(state.pdf, dr.select(sampled, light_pdf, 0))
         return dr.select(is_there, state.throughput * weight * emitter.eval(si, is_there), 0)
 
-    def _fluorescence(self, bsdf: Any, si: Any, active: Any) -> tuple[Any, Any]:
-        """Throughputs and incident wavelengths of the surface's fluorescence."""
+    def _fluorescence(self, bsdf: Any, si: Any, active: Any) -> _Moved:
+        """What the surface re-radiates to the wavelengths of the path."""
         if not self.fluorescent:
-            return no_fluorescence(si)
+            return _Moved(*no_fluorescence(si), mi.UInt32(0))
         u = self.sampler.next_2d()
-        if is_scalar():
-            return self._answer(bsdf, si, u, active)
-        moved, nm = dr.dispatch(bsdf, self._answer, si, u, active)
-        return dr.select(active, moved, 0), dr.select(active, nm, si.wavelengths)
+        moved = _Moved(*_called(bsdf, self._drawn, si, u, active))
+        moved.throughput = dr.select(active, moved.throughput, 0)
+        moved.nm = dr.select(active, moved.nm, si.wavelengths)
+        return moved
 
-    def _answer(self, bsdf: Any, si: Any, u: Any, active: Any) -> tuple[Any, Any]:
-        for surface, answer in self.fluorescent:
-            if surface is bsdf:
-                return answer(si, u, active)
-        return no_fluorescence(si)
+    def _drawn(self, bsdf: Any, si: Any, u: Any, active: Any) -> tuple[Any, Any, Any]:
+        for glow in self.fluorescent:
+            if glow.surface is bsdf:
+                return glow.draw(si, u, active)
+        return *no_fluorescence(si), mi.UInt32(0)
 
-    def _lit(
-        self, state: _State, si: Any, bsdf: Any, moved: Any, moved_nm: Any, active: Any
-    ) -> Any:
+    def _lobe(self, bsdf: Any, si: Any, wo: Any, part: Any, active: Any) -> Any:
+        for glow in self.fluorescent:
+            if glow.surface is bsdf:
+                return glow.lobe(si, wo, part, active)
+        return mi.Spectrum(0)
+
+    def _lit(self, state: _State, si: Any, bsdf: Any, moved: _Moved, active: Any) -> Any:
         """Light directly from an emitter: the reflected and the re-radiated part together."""
         active = active & mi.has_flag(bsdf.flags(), mi.BSDFFlags.Smooth)
         ds, light = self.scene.sample_emitter_direction(si, self.sampler.next_2d(), True, active)
@@ -216,14 +232,15 @@ class _Walk:
         total = value * light
         if self.fluorescent:
             incident = mi.SurfaceInteraction3f(si)
-            incident.wavelengths = moved_nm
+            incident.wavelengths = moved.nm
             exciting = self.scene.eval_emitter_direction(incident, ds, active) / ds.pdf
-            total += _lobe(si, wo) * moved * dr.select(active, exciting, 0)
+            lobe = _called(bsdf, self._lobe, si, wo, moved.part, active)
+            total += lobe * moved.throughput * dr.select(active, exciting, 0)
         weight = dr.select(ds.delta, 1, _weight(ds.pdf, pdf))
         return dr.select(active, state.throughput * weight * total, 0)
 
     def _scattered(
-        self, state: _State, si: Any, bsdf: Any, moved: Any, moved_nm: Any, active: Any
+        self, state: _State, si: Any, bsdf: Any, moved: _Moved, active: Any
     ) -> _State:
         """The state after scattering: one direction for all wavelengths, each kept or replaced."""
         drawn, weight = bsdf.sample(
@@ -234,11 +251,10 @@ class _Walk:
         is_valid = state.is_valid | (active & (is_through ^ True))
         ray = si.spawn_ray(si.to_world(drawn.wo))
         if self.fluorescent:
-            lobe = dr.select(is_delta, 0, ratio(_lobe(si, drawn.wo), drawn.pdf))
+            lobe = _called(bsdf, self._lobe, si, drawn.wo, moved.part, active)
+            share = dr.select(is_delta, 0, moved.throughput * lobe * ratio(1, drawn.pdf))
             choice = self.sampler.next_1d()
-            weight, ray.wavelengths = self._chosen(
-                weight, si.wavelengths, lobe * moved, moved_nm, choice
-            )
+            weight, ray.wavelengths = self._chosen(weight, si.wavelengths, share, moved.nm, choice)
         throughput = state.throughput * weight
         eta = state.eta * drawn.eta
         most = dr.max(self._expected(throughput, ray.wavelengths))
@@ -304,10 +320,11 @@ def _past_emitters(scene: Any, ray: Any, active: Any) -> Any:
     return ray
 
 
-def _lobe(si: Any, wo: Any) -> Any:
-    """The diffuse lobe with its cosine, 1/sr; 0 for transmission."""
-    cos_o = mi.Frame3f.cos_theta(wo)
-    return dr.select(mi.Frame3f.cos_theta(si.wi) * cos_o > 0, dr.abs(cos_o) / dr.pi, 0)
+def _called(bsdf: Any, function: Any, *arguments: Any) -> Any:
+    """A function of a BSDF and further arguments, for the BSDF of each ray."""
+    if is_scalar():
+        return function(bsdf, *arguments)
+    return dr.dispatch(bsdf, function, *arguments)
 
 
 def _weight(pdf: Any, other: Any) -> Any:
