@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+
 import host
 import numpy as np
 import pytest
@@ -52,12 +54,13 @@ def test_an_invalid_cube_is_named(path, tmp_path) -> None:
 @pytest.mark.parametrize(
     ("inside", "told"),
     [
-        ("", "no color, expected three numbers linear in the cube's RGB"),
+        ("", "no color, expected three numbers linear in acescg"),
         ('<vector name="color" value="0.9, 1.5, 0.4"/>', "color is 0.9, 1.5, 0.4, expected 0 to 1"),
         ('<vector name="color" value="0.9, nan, 0.4"/>', "color is 0.9, nan, 0.4, expected 0 to 1"),
         ('<rgb name="color" value="0.9, 0.5, 0.4"/>', "color is an rgb value, which the renderer"),
         ('<spectrum name="color" value="0.5"/>', "color is a spectrum, which the renderer"),
-        ('<float name="color" value="0.5"/>', "color is of type Float, expected three numbers"),
+        ('<float name="color" value="0.5"/>', "color is the number 0.5, expected three numbers"),
+        ('<bsdf name="color" type="diffuse"/>', "color is a SmoothDiffuse, expected three numbers"),
         ('<string name="color" value="red"/>', "color is of type String, expected three numbers"),
     ],
 )
@@ -65,15 +68,93 @@ def test_an_invalid_color_is_refused_in_one_line(path, inside, told) -> None:
     assert told in message(xml(f'<string name="cube" value="{path}"/>{inside}'))
 
 
+def bitmap(*texels, raw: bool = True) -> dict:
+    """A picture of one row."""
+    return {"type": "bitmap", "raw": raw, "bitmap": mi.Bitmap(np.array([texels], np.float32))}
+
+
+def normals(count: int) -> np.ndarray:
+    """A normal map of a sphere, in 8 bits."""
+    x, y = np.mgrid[-0.7 : 0.7 : count * 1j, -0.7 : 0.7 : count * 1j]
+    directions = np.stack([x, y, np.sqrt(1 - x**2 - y**2)], axis=-1)
+    return np.round(255 * (0.5 + 0.5 * directions)) / 255
+
+
+RGB = [0.9, 0.5, 0.4]
+SAMPLES = {"wavelength_min": 300.0, "wavelength_max": 830.0, "values": "0.5, 0.5"}
+SPECTRA = [
+    {"type": "uniform", "value": 0.5},
+    {"type": "regular", **SAMPLES},
+    {"type": "irregular", "wavelengths": "300, 830", "values": "0.5, 0.5"},
+    {"type": "d65"},
+    {"type": "blackbody", "temperature": 3000.0},
+    {"type": "srgb", "color": RGB},
+]
+NOT_COLORS = [
+    *((spectrum, "color is a spectrum") for spectrum in SPECTRA),
+    ({"type": "rgb", "value": RGB}, "which the renderer has already upsampled"),
+    (0.5, "color is the number 0.5"),
+    (bitmap(RGB, raw=False), "color is a bitmap without raw=true, which the renderer has already"),
+    (bitmap([0.5], raw=True), "color is a bitmap of one channel"),
+    (bitmap([0.5], raw=False), "color is a bitmap of one channel"),
+    ({"type": "checkerboard"}, "color is a Checkerboard, which has no colors of three numbers"),
+    ({"type": "rawconstant", "value": 0.5}, "color is a texture of one number"),
+    ({"type": "rawconstant", "value": [0.9, 2.0, 0.4]}, "0.9, 2, 0.4 in texel [0], outside 0 to 1"),
+    (bitmap(RGB, [0.2, 1.5, 0.6]), "a texture with 0.2, 1.5, 0.6 in texel [0, 1], outside 0 to 1"),
+    (bitmap(RGB, [-0.1, 1, 0.6]), "a texture with -0.1, 1, 0.6 in texel [0, 1], outside 0 to 1"),
+    (bitmap([0.2, np.nan, 0.6]), "a texture with 0.2, nan, 0.6 in texel [0, 0], outside 0 to 1"),
+    (bitmap([np.inf, 0, 0]), "a texture with inf, 0, 0 in texel [0, 0], outside 0 to 1"),
+    (bitmap(*normals(9).reshape(-1, 3)), "color is a normal map: its texels are vectors of length"),
+]
+
+
 @pytest.mark.parametrize("variant", [host.SCALAR, host.LLVM])
-def test_a_bitmap_that_is_not_raw_is_refused(path, variant) -> None:
+def test_a_texture_that_cannot_be_a_color_is_refused_in_one_line(path, variant) -> None:
     host.renderer(variant)
-    for channels, raw in ((3, False), (1, True)):
-        bitmap = mi.Bitmap(np.full((2, 2, channels), 0.5, np.float32))
-        color = {"type": "bitmap", "bitmap": bitmap, "raw": raw}
-        told = message({"type": "upglow", "cube": path, "color": color})
-        assert "color is a bitmap of spectra or without three channels, expected three" in told
-        assert "channels and raw=true" in told
+    for color, told in NOT_COLORS:
+        found = message({"type": "upglow", "cube": path, "color": color})
+        assert told in found, (color, found)
+        assert "expected three numbers linear in acescg (<vector" in found, found
+        assert found.endswith("or a bitmap of them with raw=true"), found
+
+
+def test_a_picture_that_is_encoded_for_a_screen_is_refused_with_its_conversion(
+    path, tmp_path, program
+) -> None:
+    texels = np.random.default_rng(20260101).integers(0, 256, (8, 8, 3), np.uint8)
+    for suffix in ("png", "jpg"):
+        file = tmp_path / f"wall.{suffix}"
+        mi.Bitmap(texels).write(str(file))
+        told = message({"type": "upglow", "cube": path, "color": picture(file)})
+        assert f"color is wall.{suffix}, a picture encoded for a screen" in told
+    told = message({"type": "upglow", "cube": path, "color": picture(tmp_path / "wall.png")})
+    command = told[told.index("(upglow ") + 1 : told.index(" converts it)")].replace("CUBE", path)
+    subprocess.run([program, *command.split()[1:]], cwd=tmp_path, check=True, capture_output=True)
+    made = {"type": "upglow", "cube": path, "color": picture(tmp_path / "wall.exr")}
+    assert "UpglowBSDF" in str(mi.load_dict(made))
+
+
+def picture(file) -> dict:
+    return {"type": "bitmap", "raw": True, "filename": str(file)}
+
+
+@pytest.mark.parametrize("variant", [host.SCALAR, host.LLVM])
+def test_textures_of_colors_load(path, variant) -> None:
+    host.renderer(variant)
+    near = 0.5 + 0.1 * np.random.default_rng(20260101).uniform(-1, 1, (64, 3))
+    grid = mi.VolumeGrid(np.full((2, 2, 2, 3), 0.5, np.float32))
+    for color in [
+        bitmap(RGB),
+        bitmap([*RGB, 0.5]),
+        bitmap([-0.02, 1.02, 0.5]),
+        # A pale blue that varies: its numbers are near those of normals.
+        bitmap(*(near * [1, 1, 0] + [0, 0, 1])),
+        {"type": "rawconstant", "value": RGB},
+        {"type": "volume", "volume": {"type": "gridvolume", "raw": True, "grid": grid}},
+        {"type": "mesh_attribute", "name": "vertex_color"},
+    ]:
+        made = mi.load_dict({"type": "upglow", "cube": path, "color": color})
+        assert mi.has_flag(made.flags(), mi.BSDFFlags.SpatiallyVarying)
 
 
 @pytest.mark.parametrize("variant", ["scalar_rgb", "llvm_ad_rgb", "llvm_ad_spectral_polarized"])

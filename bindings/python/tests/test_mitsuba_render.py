@@ -285,7 +285,7 @@ def test_a_texture_of_one_color_is_that_color(cube) -> None:
 
 def test_textures_are_filtered_first_and_clamped_to_the_cube(cube) -> None:
     light = lights()["D65"]
-    texels = np.array([[[0.2, 1.2, 0.6], [0.6, 0.8, 1.0]]], np.float32)
+    texels = np.array([[[0.2, 1.04, 0.6], [0.6, 0.96, 1.0]]], np.float32)
     texture = {"type": "bitmap", "bitmap": mi.Bitmap(texels), "raw": True, "wrap_mode": "clamp"}
     scene = host.plane(surface(cube, texture), light)
     # Seen from so near that all is halfway between the texels.

@@ -26,8 +26,8 @@ def bsdf_class() -> Any:
             if "cube" not in props:
                 raise ValueError("no cube, expected the path of a cube's file")
             self._source = props["cube"]
-            self._cube = on_device(cube_named(self._source))
-            self._color = Color(props)
+            cube = cube_named(self._source)
+            self._cube, self._color = on_device(cube), Color(props, cube)
             flags = mi.BSDFFlags.DiffuseReflection | mi.BSDFFlags.FrontSide
             if self._color.is_textured:
                 flags = flags | mi.BSDFFlags.SpatiallyVarying

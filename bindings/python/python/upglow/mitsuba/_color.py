@@ -3,35 +3,53 @@
 from __future__ import annotations
 
 import math
+import re
+from pathlib import PurePath
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
+from .._cube import Cube
 from ._host import dr, is_scalar, mi
 
-_EXPECTED = (
-    "expected three numbers linear in the cube's RGB "
-    '(<vector name="color" value="0.9, 0.2, 0.4"/>) or a bitmap with raw=true'
-)
+_ENCODED = (".png", ".jpg", ".jpeg", ".bmp", ".tga")
+"""Suffixes of pictures whose numbers are encoded for a screen; with `raw` they are not decoded."""
+
+_BEYOND = 0.05
+"""How far a texel may be outside 0 to 1, where it is clamped. Half precision, filters that sharpen and
+colors that no material shows leave a few percent: a smaller number would refuse such pictures, a
+greater one would accept light and heights for colors."""
+
+_UNIT = 0.02
+"""How far the length of a normal may be from 1 in a normal map: 8 bits and three channels round by up to
+0.014. With a greater number, pictures of colors would be refused."""
+
+_ROUGH = 0.3
+"""The least range of red and of green for which lengths of 1 can only be those of normals: in a smaller
+range, colors next to (0.5, 0.5, 1) have them as well."""
+
+_MOST = 0.99
+"""The share of the texels that are normals in a normal map; lossy compression changes some."""
 
 
 class Color:
     """A color in the cube's RGB space, where a ray meets a surface."""
 
-    def __init__(self, props: Any) -> None:
+    def __init__(self, props: Any, cube: Cube) -> None:
         self.is_textured = False
-        if "color" not in props:
-            raise ValueError(f"no color, {_EXPECTED}")
-        kind = str(props.type("color")).split(".")[-1]
+        kind = str(props.type("color")).split(".")[-1] if "color" in props else None
         if kind == "Vector":
             self._value = _constant(list(props["color"]))
-        elif kind == "Object" and isinstance(props["color"], mi.Texture):
-            self._value, self.is_textured = _texture(props["color"]), True
-        elif kind in ("Color", "Spectrum"):
+            return
+        found = None if kind is None else _found(kind, props["color"], cube)
+        if kind is None or found is not None:
             raise ValueError(
-                f"color is {'an rgb value' if kind == 'Color' else 'a spectrum'}, "
-                f"which the renderer has already upsampled, {_EXPECTED}"
+                f"{'no color' if found is None else f'color is {found}'}, expected three numbers "
+                f"linear in {cube.contract.space} "
+                '(<vector name="color" value="0.9, 0.2, 0.4"/>) or a bitmap of them with raw=true'
             )
-        else:
-            raise ValueError(f"color is of type {kind}, {_EXPECTED}")
+        self._value, self.is_textured = props["color"], True
 
     def at(self, si: Any, active: Any) -> Any:
         """Linear RGB, 0 to 1; a texture is filtered before the look-up."""
@@ -57,13 +75,65 @@ def _constant(rgb: list[float]) -> Any:
     return color
 
 
-def _texture(texture: Any) -> Any:
-    if texture.class_name().startswith("Bitmap"):
-        try:
-            texture.eval_3(dr.zeros(mi.SurfaceInteraction3f))
-        except RuntimeError:
-            raise ValueError(
-                "color is a bitmap of spectra or without three channels, "
-                "expected three channels and raw=true"
-            ) from None
-    return texture
+def _found(kind: str, value: Any, cube: Cube) -> str | None:
+    """What a value of another type than a vector is; None if it is a texture of colors."""
+    if kind in ("Color", "Spectrum"):
+        article = "an rgb value" if kind == "Color" else "a spectrum"
+        return f"{article}, which the renderer has already upsampled"
+    if kind in ("Integer", "Float"):
+        return f"the number {value:g}"
+    if not isinstance(value, mi.Object):
+        return f"of type {kind}"
+    name = value.class_name()
+    if not isinstance(value, mi.Texture):
+        return f"a {name}"
+    if name == "MeshAttribute":
+        return None  # It has no numbers before the mesh has it.
+    if name == "RawConstantTexture":
+        numbers = np.ravel(mi.traverse(value)["value"])
+        return "a texture of one number" if numbers.size == 1 else _problem(numbers[None])
+    if not value.is_spatially_varying():
+        return f"a spectrum ({name})"
+    try:
+        value.eval_3(dr.zeros(mi.SurfaceInteraction3f))
+    except RuntimeError:
+        return _without_colors(value)
+    grids = (np.array(grid) for key, grid in mi.traverse(value).items() if key.endswith("data"))
+    return _encoded(value, cube) or next(filter(None, map(_problem, grids)), None)
+
+
+def _without_colors(texture: Any) -> str:
+    """What a texture is from which three numbers cannot be read."""
+    if not texture.class_name().startswith("Bitmap"):
+        return f"a {texture.class_name()}, which has no colors of three numbers"
+    if mi.traverse(texture)["data"].shape[-1] == 1:
+        return "a bitmap of one channel"
+    return "a bitmap without raw=true, which the renderer has already upsampled"
+
+
+def _encoded(texture: Any, cube: Cube) -> str | None:
+    """Whether the texture is a file in a format for screens, and how to convert it."""
+    name = re.search(r'name = "(.*)"', str(texture))
+    if name is None or not name[1].lower().endswith(_ENCODED):
+        return None
+    output = PurePath(name[1]).with_suffix(".exr")
+    return (
+        f"{name[1]}, a picture encoded for a screen (upglow bake CUBE {name[1]} --output {output} "
+        f"--as radiance --light {cube.contract.illuminant.name} converts it)"
+    )
+
+
+def _problem(texels: NDArray[Any]) -> str | None:
+    """Why numbers, shape (..., 3), cannot be colors; None if they can."""
+    is_off = ~((texels >= -_BEYOND) & (texels <= 1 + _BEYOND)).all(axis=-1)
+    if is_off.any():
+        first = np.unravel_index(int(is_off.argmax()), is_off.shape)
+        told = ", ".join(f"{value:g}" for value in texels[first])
+        at = ", ".join(str(i) for i in first)
+        return f"a texture with {told} in texel [{at}], outside 0 to 1"
+    normals = 2 * texels - 1
+    is_unit = np.abs((normals * normals).sum(axis=-1) ** 0.5 - 1) < _UNIT
+    is_rough = np.ptp(texels.reshape(-1, 3)[:, :2], axis=0).min() > _ROUGH
+    if is_rough and (is_unit & (normals[..., 2] > 0)).mean() > _MOST:
+        return "a normal map: its texels are vectors of length 1"
+    return None
