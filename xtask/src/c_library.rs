@@ -11,7 +11,6 @@ mod programs;
 
 pub(crate) use header::write as write_header;
 pub(crate) use install::install;
-pub(crate) use programs::need;
 
 /// Where the library's sources are, below the workspace's root.
 const FOLDER: &str = "bindings/c";
@@ -36,12 +35,5 @@ fn scratch(root: &Path) -> Result<PathBuf, StepError> {
 }
 
 fn installs(root: &Path) -> Result<(), StepError> {
-    prefix(root).map(|_| ())
-}
-
-/// Installs the library for checks; below which folder.
-pub(crate) fn prefix(root: &Path) -> Result<PathBuf, StepError> {
-    let prefix = scratch(root)?.join("prefix");
-    install(root, &prefix)?;
-    Ok(prefix)
+    install(root, &scratch(root)?.join("prefix")).map(|_| ())
 }

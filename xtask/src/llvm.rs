@@ -27,7 +27,7 @@ const FOLDERS: [&str; 7] = [
 ];
 
 /// The library: the one that the user named, or the best there is.
-pub(crate) fn library() -> Option<PathBuf> {
+fn library() -> Option<PathBuf> {
     if let Some(named) = env::var_os(VARIABLE) {
         return Some(named.into());
     }

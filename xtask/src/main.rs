@@ -16,7 +16,6 @@ mod explorer;
 mod guide;
 mod layers;
 mod llvm;
-mod mitsuba;
 mod outputs;
 mod python;
 mod python_wheel;
@@ -35,7 +34,6 @@ usage: cargo xtask COMMAND
       --slow           add the tests named slow_*
   test-c           run the steps about the C library
   test-python      build the Python package's wheel and run its tests
-  test-mitsuba     build the plugins for Mitsuba 3 and run their tests
   tables           write crates/upglow-color/src/tables from tables/*.csv
   header           write bindings/c/include/upglow.h from bindings/c/src
   bench            run every bench and write docs/PERFORMANCE.md
@@ -73,7 +71,6 @@ fn run(root: &Path, args: &[&str]) -> Result<bool, StepError> {
         ["check", options @ ..] => return check::run(root, options),
         ["test-c"] => return Ok(check::run_steps(root, &c_library::STEPS, false)),
         ["test-python"] => return Ok(check::run_steps(root, &python_wheel::STEPS, false)),
-        ["test-mitsuba"] => return Ok(check::run_steps(root, &mitsuba::STEPS_WITH_PACKAGE, false)),
         ["outputs", program, folder, options @ ..] => return outputs(program, folder, options),
         ["tables"] => tables::write(root)?,
         ["bench"] => bench::run(root)?,

@@ -18,8 +18,8 @@ const REQUIREMENTS: [&str; 5] = [
     "crates/upglow-shader/tests/drivers/requirements.txt",
 ];
 
-/// The packages that the plugins for Mitsuba need in addition; not every platform has them.
-const MITSUBA_REQUIREMENTS: &str = "bindings/mitsuba/requirements.txt";
+/// The renderer that `upglow.mitsuba` works in; not every platform has it.
+const MITSUBA_REQUIREMENTS: &str = "bindings/python/requirements-mitsuba.txt";
 
 /// Makes `target/python` hold every package that tests need; the interpreter. What is there already
 /// stays.

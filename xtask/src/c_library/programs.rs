@@ -78,7 +78,7 @@ impl Language {
 }
 
 /// Skips a step without the compilers or one of these tools.
-pub(crate) fn need(tools: &[&str]) -> Result<(), StepError> {
+fn need(tools: &[&str]) -> Result<(), StepError> {
     let reason = if Language::C.compiler().is_none() {
         "no C compiler, neither $CC nor cc"
     } else if Language::Cxx.compiler().is_none() {

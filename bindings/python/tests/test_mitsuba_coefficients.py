@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import struct
 import subprocess
 import sys
@@ -27,12 +26,12 @@ to 2e-3 that interpolation adds at most to either. Measured, ours over Mitsuba's
 average and 1.14 at most, by 5 nm 0.49 and 1.16."""
 
 
+pytest.importorskip("mitsuba", reason="needs the package mitsuba")
+
+
 @pytest.fixture(scope="module")
-def table(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def table(program: str, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with `data/srgb.coeff`, made as a user makes it."""
-    program = os.environ.get("UPGLOW_PROGRAM")
-    if program is None:
-        pytest.skip("UPGLOW_PROGRAM names no program `upglow`")
     folder = tmp_path_factory.mktemp("table")
     cube, output = folder / "srgb.safetensors", folder / "data" / "srgb.coeff"
     output.parent.mkdir()
