@@ -327,6 +327,18 @@ def test_gradients_are_those_of_the_library(cube) -> None:
     assert np.allclose(found, expected, atol=0.02 * np.abs(expected).max()), (found, expected)
 
 
+def test_one_ray_at_a_time_passes_through_wrappers_too(cube) -> None:
+    host.renderer(host.SCALAR)
+    light = lights()["D65"]
+    black = {"type": "diffuse", "reflectance": 0.0}
+    bsdf, share = WRAPPED["masked blend of bumps"](surface(cube, MINT), black)
+    scene = host.plane(bsdf, light, max_depth=3)
+    scene["sensor"] = host.sensor([0, 0, 2], size=8)
+    behind = host.light_of(light) * 0.5
+    expected = host.xyz_of(share * leaving(cube, MINT, light) + behind)
+    host.assert_mean(host.picture(scene, spp=64), expected)
+
+
 def test_one_ray_at_a_time_agrees_with_many(cube) -> None:
     expected = host.xyz_of(leaving(cube, MINT, lights()["D65"]))
     host.renderer(host.SCALAR)
