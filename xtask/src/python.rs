@@ -10,10 +10,11 @@ use crate::step::{StepError, read};
 pub(crate) const VARIABLE: &str = "UPGLOW_PYTHON";
 
 /// The lists of packages that tests need, with pinned versions.
-const REQUIREMENTS: [&str; 5] = [
+const REQUIREMENTS: [&str; 6] = [
     "xtask/requirements.txt",
     "bindings/python/requirements-test.txt",
     "crates/upglow-cli/tests/farm/requirements.txt",
+    "crates/upglow-cli/tests/luts/requirements.txt",
     "crates/upglow-image/tests/readers/requirements.txt",
     "crates/upglow-shader/tests/drivers/requirements.txt",
 ];

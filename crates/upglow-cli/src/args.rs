@@ -14,8 +14,8 @@ use std::path::PathBuf;
 use clap::{Parser, Subcommand};
 use upglow::{CoefficientTable, Interpolation};
 use upglow_color::{Ends, RgbSpace, choices};
-use upglow_fit::PaintKind;
-use upglow_shader::Language;
+use upglow_fit::{MaterialSet, PaintKind, ReachView};
+use upglow_shader::{Language, LutFormat, LutLattice};
 use upglow_terminal::{Console, Threads, count, in_range, word};
 
 pub(crate) use build::{
@@ -222,13 +222,23 @@ pub(crate) struct ExportArgs {
     pub(crate) output: PathBuf,
     /// csv: one line per node; coeff: reflectances only, for Mitsuba 3 and colour-science; html: a page
     /// to explore it with, offline; mtlx: a MaterialX surface with its color under --light, for RGB
-    /// renderers, and the same for USD; js: a module of JavaScript, and the others shader source, with
-    /// textures beside them [default: by the suffix of the output]
+    /// renderers, and the same for USD; clf, cube: a table of the nearest colors that materials show, for
+    /// color management; js: a module of JavaScript, and the others shader source, with textures beside
+    /// them [default: by the suffix of the output]
     #[arg(long, value_name = "NAME", value_parser = word::<ExportFormat>())]
     pub(crate) format: Option<ExportFormat>,
-    /// Nodes along each axis of a coeff table, 2 to 128 [default: 64]
-    #[arg(long, value_name = "N", value_parser = in_range(CoefficientTable::RESOLUTIONS))]
+    /// Nodes along each axis of a coeff table, 2 to 128 [default: 64], or of a clf or cube table, 2 to 129
+    /// [default: 65, or for the colors of the cube as many as it has]
+    #[arg(long, value_name = "N", value_parser = in_range(TABLE_RESOLUTIONS))]
     pub(crate) resolution: Option<usize>,
+    /// The materials of a clf or cube table. cube: those that this cube returns; reflectance: every
+    /// reflectance, without dyes; any: every material, fluorescent or not [default: cube]
+    #[arg(long, value_name = "NAME", value_parser = word::<MaterialSet>())]
+    pub(crate) target: Option<MaterialSet>,
+    /// What a clf or cube table shows. nearest: the nearest color of the materials; out-of-reach: the
+    /// color itself, but flat magenta or green where the materials do not show it [default: nearest]
+    #[arg(long, value_name = "NAME", value_parser = word::<ReachView>())]
+    pub(crate) show: Option<ReachView>,
     /// Greatest slope of the reflectances of a coeff table, 0.0001 to 0.2 per nm, or none for 0.2
     /// [default: none, as in Jakob and Hanika 2019]
     #[arg(long, value_name = "SLOPE|none", value_parser = slope_limit)]
@@ -252,8 +262,13 @@ pub(crate) enum ExportFormat {
     Coeff,
     Html,
     MaterialX,
+    Lut(LutFormat),
     Shader(Language),
 }
+
+/// Nodes along an axis of a coeff table or of a LUT; which of both is checked with the format.
+const TABLE_RESOLUTIONS: [usize; 2] =
+    [CoefficientTable::RESOLUTIONS[0], LutLattice::RESOLUTIONS[1]];
 
 choices!(
     ExportFormat,
@@ -262,6 +277,8 @@ choices!(
     Coeff = "coeff",
     Html = "html",
     MaterialX = "mtlx",
+    Lut(LutFormat::Clf) = "clf",
+    Lut(LutFormat::Cube) = "cube",
     Shader(Language::Wgsl) = "wgsl",
     Shader(Language::Glsl) = "glsl",
     Shader(Language::Hlsl) = "hlsl",

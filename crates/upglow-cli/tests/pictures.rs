@@ -411,12 +411,37 @@ fn options_that_do_not_fit() {
         ("read material.exr --at -1,0", "--at: \"-1\", expected two whole numbers X,Y"),
         ("read material.exr --at 2,0", "--at: 2,0 is outside the picture, expected 0,0 to 1,1"),
         ("lint", "the following required arguments were not provided: <FILE>"),
-        ("export cube x.txt", "--format: not given, expected one of csv, coeff, html, mtlx, wgsl"),
+        ("export cube x.txt", "--format: not given, expected one of csv, coeff, html, mtlx, clf"),
         (
             "export cube x.coeff --resolution 500",
             "--resolution: 500, expected a whole number from 2",
         ),
         ("export cube x.csv --resolution 8", "--resolution: given with --format csv, expected"),
+        ("export cube x.coeff --resolution 129", "--resolution: resolution 129, expected 2 to 128"),
+        (
+            "export cube x.cube --resolution 130",
+            "--resolution: 130, expected a whole number from 2",
+        ),
+        (
+            "export cube x.cube --resolution 5 --target any",
+            "--resolution: resolution 5, expected 6 to 129",
+        ),
+        (
+            "export cube x.clf --target paint",
+            "--target: unknown set of materials \"paint\", expected cube",
+        ),
+        (
+            "export cube x.clf --show all",
+            "--show: unknown view \"all\", expected nearest or out-of-reach",
+        ),
+        (
+            "export cube x.csv --target any",
+            "--target: given with --format csv, expected --format clf",
+        ),
+        (
+            "export cube x.csv --show nearest",
+            "--show: given with --format csv, expected --format clf",
+        ),
     ];
     for (words, line) in cases {
         let found = folder.refused(2, words);

@@ -2,6 +2,7 @@
 //!
 //! - one color: [`Fitter`], [`Fit`]
 //! - which kinds of material millions of colors need: [`StandingTable`]
+//! - the nearest colors that materials show: [`NearestColors`]
 //! - one material per texel: [`Polisher`]
 //! - a measured re-radiation matrix: [`fit_matrix`]
 //! - all materials that may have a color: [`MetamerSearch`]
@@ -32,6 +33,7 @@ mod fit_matrix;
 mod fitter;
 mod kind;
 mod metamers;
+mod nearest_colors;
 mod options;
 mod own_material;
 mod polish;
@@ -63,6 +65,7 @@ pub use fit_matrix::{
 pub use fitter::{ColorError, Fitter};
 pub use kind::{BlendKinds, KindCounts, MaterialKind};
 pub use metamers::{MetamerError, MetamerLight, MetamerSearch, Metamers, PaintKind};
+pub use nearest_colors::{MaterialSet, NearestColor, NearestColors, ReachView};
 pub use options::{FitOptions, FitOptionsError, GivenOptions, Method};
 pub use own_material::{OwnMaterial, OwnMaterialError};
 pub use polish::Polisher;

@@ -5,7 +5,7 @@ mod boxes;
 
 use std::sync::OnceLock;
 
-use upglow_color::{Colorimetry, Contract, LinearRgb, Standing, StandingKind};
+use upglow_color::{ColorSolids, Colorimetry, Contract, LinearRgb, Standing, StandingKind};
 
 use boxes::{BoxLattice, Cell, FLUORESCENCE, REFLECTANCE, Reach};
 
@@ -65,6 +65,11 @@ impl StandingTable {
     /// White, matrices and weights of the contract, by sums over 5 nm.
     pub fn colorimetry(&self) -> &Colorimetry {
         &self.reach.colorimetry
+    }
+
+    /// The colors that materials reach under the contract.
+    pub fn solids(&self) -> &ColorSolids {
+        &self.reach.solids
     }
 
     /// The kind of material that `rgb` needs, and the nearest colors that materials reach; takes a search
@@ -156,7 +161,7 @@ fn exponent_above(value: f64) -> i64 {
 mod tests {
     use super::*;
     use rayon::prelude::*;
-    use upglow_color::{Adaptation, ColorSolids, Illuminant, RgbSpace};
+    use upglow_color::{Adaptation, Illuminant, RgbSpace};
 
     fn contracts() -> [Contract; 3] {
         let space = |name| RgbSpace::named(name).unwrap();

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 
 use crate::color_node::{NODE, file_name};
 use crate::language::Language;
+use crate::xml::{escaped, is_forbidden, plain};
 
 /// The same materials in both languages. The files that they name are looked for beside them.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -93,7 +94,7 @@ struct Named<'a> {
 
 /// Refuses what XML cannot hold, and what MaterialX 1.39.5 would copy into OSL as code: it does not escape texts there.
 fn check(file: &str) -> Result<(), DocumentError> {
-    let is_bad = |c: char| c.is_control() || ['"', '\\', '\u{fffe}', '\u{ffff}'].contains(&c);
+    let is_bad = |c: char| is_forbidden(c) || ['"', '\\'].contains(&c);
     if file.contains(is_bad) {
         return Err(DocumentError::Name { found: file.into() });
     }
@@ -108,11 +109,6 @@ fn free_name(map: &ColorMap, taken: &mut HashSet<String>) -> String {
     let free = (1..).map(numbered).find(|name| !taken.contains(name)).expect("numbers do not end");
     taken.insert(free.clone());
     free
-}
-
-/// The text with `_` in place of what names may not hold.
-fn plain(text: &str) -> String {
-    text.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect()
 }
 
 fn materialx(materials: &[Named<'_>], space: Option<&str>) -> String {
@@ -204,21 +200,6 @@ fn map_graph(map: &ColorMap, in_space: &str) -> String {
 
 fn numbers(of: [f64; 3]) -> String {
     of.map(|value| value.to_string()).join(", ")
-}
-
-/// Text between double quotes in XML.
-fn escaped(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => escaped += "&amp;",
-            '<' => escaped += "&lt;",
-            '>' => escaped += "&gt;",
-            '"' => escaped += "&quot;",
-            _ => escaped.push(c),
-        }
-    }
-    escaped
 }
 
 fn usd(materials: &[Named<'_>], space: Option<&str>) -> String {

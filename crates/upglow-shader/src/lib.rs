@@ -20,7 +20,8 @@
 //! ```
 //!
 //! For RGB renderers, [`color_node`] is a node that returns the color of a cube's material under a light,
-//! [`ColorTexture`] the numbers that it reads, and [`Documents`] a surface with it in MaterialX and USD.
+//! [`ColorTexture`] the numbers that it reads, and [`Documents`] a surface with it in MaterialX and USD. For color
+//! management, [`Lut`] is a table of colors as CLF or `.cube`.
 //!
 //! Out of scope: reading or writing files, talking to a driver, how surfaces scatter over angles.
 
@@ -29,15 +30,18 @@ mod documents;
 mod error;
 mod javascript;
 mod language;
+mod lut;
 mod payload;
 mod shader;
 mod template;
 mod textures;
 mod tiff;
 mod translation;
+mod xml;
 
 pub use color_node::{ColorTexture, color_node};
 pub use documents::{ColorMap, DocumentError, Documents};
 pub use error::ShaderError;
 pub use language::Language;
+pub use lut::{Lut, LutError, LutFormat, LutLattice};
 pub use shader::{PayloadFile, Shader};

@@ -7,13 +7,15 @@ use serde::Serialize;
 use upglow::{Cube, Model, Node, Sigmoid, Vertex};
 use upglow_color::{Choice, Illuminant, RgbSpace};
 use upglow_explorer::offline_page;
-use upglow_fit::{BuildError, Preset, Relighting, fit_coefficients};
+use upglow_fit::{BuildError, MaterialSet, Preset, Relighting, fit_coefficients};
 use upglow_image::{ExrDescription, ExrWriter, InteropSpace, Sample};
-use upglow_shader::{ColorTexture, Documents, Language, Shader, ShaderError, color_node};
+use upglow_shader::{
+    ColorTexture, Documents, Language, LutFormat, Shader, ShaderError, color_node,
+};
 use upglow_terminal::{Console, Failure, Report};
 
-use super::documents;
 use super::material_report::{dye_names, unsigned_zeros};
+use super::{documents, luts};
 use crate::args::{ExportArgs, ExportFormat, SlopeLimit, limit_text};
 use crate::output::{Lines, quoted, warn, warn_of_own_light, warn_of_ultraviolet};
 use crate::pictures::RealPictures;
@@ -47,8 +49,11 @@ pub(crate) fn run(args: &ExportArgs, console: &Console) -> Result<(), Failure> {
     files::check_ending(&args.output, &[kind.name()])?;
     files::check_output_of(&args.output, Some(&args.file), &RealPictures::default())?;
     let cube = files::read_cube(&args.file)?;
-    // A coefficient table has no dyes.
-    let has_dyes = kind != ExportFormat::Coeff;
+    let has_dyes = match kind {
+        ExportFormat::Coeff => false,
+        ExportFormat::Lut(_) => args.target.unwrap_or_default() == MaterialSet::Cube,
+        _ => true,
+    };
     let missing_ultraviolet = match &light {
         Some(light) => warn_of_ultraviolet(cube.model().missing_ultraviolet(light)),
         None => has_dyes.then(|| warn_of_own_light(&cube)).flatten(),
@@ -63,6 +68,7 @@ pub(crate) fn run(args: &ExportArgs, console: &Console) -> Result<(), Failure> {
             textures = written;
             (document, cube.nodes().len())
         }
+        ExportFormat::Lut(format) => luts::lut(args, &cube, format, console)?,
         ExportFormat::Shader(language) => {
             let (source, written) = shader(args, &cube, language)?;
             textures = written;
@@ -183,8 +189,12 @@ fn kind(args: &ExportArgs) -> Result<ExportFormat, Failure> {
     })?;
     let coeff = &[ExportFormat::Coeff][..];
     let mtlx = &[ExportFormat::MaterialX][..];
+    let luts = &[ExportFormat::Lut(LutFormat::Clf), ExportFormat::Lut(LutFormat::Cube)][..];
+    let tables = &[coeff, luts].concat()[..];
     let options = [
-        ("--resolution", args.resolution.is_some(), coeff),
+        ("--resolution", args.resolution.is_some(), tables),
+        ("--target", args.target.is_some(), luts),
+        ("--show", args.show.is_some(), luts),
         ("--slope-max-per-nm", args.slope_max_per_nm.is_some(), coeff),
         ("--light", args.light.is_some(), mtlx),
         ("--light-ends", args.light_file.ends.is_some(), mtlx),
@@ -204,9 +214,6 @@ fn table_limit(args: &ExportArgs) -> SlopeLimit {
 
 /// A table of reflectances for the cube's RGB space and light, and its number of nodes.
 fn coeff(args: &ExportArgs, cube: &Cube, console: &Console) -> Result<(Vec<u8>, usize), Failure> {
-    if !matches!(cube.model(), Model::Reflectance) {
-        warn("a coefficient table has no fluorescence: colors that need it become duller");
-    }
     let resolution = args.resolution.unwrap_or(TABLE_RESOLUTION);
     let fitted = console.work(args.threads, |bar| {
         fit_coefficients(cube.contract(), table_limit(args), resolution, bar)
@@ -214,8 +221,12 @@ fn coeff(args: &ExportArgs, cube: &Cube, console: &Console) -> Result<(Vec<u8>, 
     let table = fitted.map_err(|error| match error {
         BuildError::Stopped => Failure::Stopped,
         BuildError::Options(error) => Failure::option("--slope-max-per-nm", error),
+        BuildError::Table(error) => Failure::option("--resolution", error),
         error => Failure::file(&args.file, error),
     })?;
+    if !matches!(cube.model(), Model::Reflectance) {
+        warn("a coefficient table has no fluorescence: colors that need it become duller");
+    }
     Ok((table.to_bytes(), table.nodes().len()))
 }
 

@@ -16,6 +16,7 @@ mod fit_matrix;
 mod inspect;
 mod inspect_table;
 mod lint;
+mod luts;
 mod material_report;
 mod read;
 mod relight;
