@@ -104,6 +104,7 @@ NOT_COLORS = [
     (bitmap(RGB, [-0.1, 1, 0.6]), "a texture with -0.1, 1, 0.6 in texel [0, 1], outside 0 to 1"),
     (bitmap([0.2, np.nan, 0.6]), "a texture with 0.2, nan, 0.6 in texel [0, 0], outside 0 to 1"),
     (bitmap([np.inf, 0, 0]), "a texture with inf, 0, 0 in texel [0, 0], outside 0 to 1"),
+    ({"type": "mesh_attribute", "name": "vertex_color"}, "(vertex_rgb would keep its numbers)"),
     (bitmap(*normals(9).reshape(-1, 3)), "color is a normal map: its texels are vectors of length"),
 ]
 
@@ -151,7 +152,7 @@ def test_textures_of_colors_load(path, variant) -> None:
         bitmap(*(near * [1, 1, 0] + [0, 0, 1])),
         {"type": "rawconstant", "value": RGB},
         {"type": "volume", "volume": {"type": "gridvolume", "raw": True, "grid": grid}},
-        {"type": "mesh_attribute", "name": "vertex_color"},
+        {"type": "mesh_attribute", "name": "vertex_rgb"},
     ]:
         made = mi.load_dict({"type": "upglow", "cube": path, "color": color})
         assert mi.has_flag(made.flags(), mi.BSDFFlags.SpatiallyVarying)

@@ -283,6 +283,21 @@ def test_a_texture_of_one_color_is_that_color(cube) -> None:
     assert np.allclose(*found, rtol=1e-4, atol=SAME_TOL)
 
 
+def test_an_attribute_of_a_mesh_is_a_color_of_the_cube(cube) -> None:
+    light = lights()["D65"]
+    color = {"type": "mesh_attribute", "name": "vertex_rgb"}
+    holder = mi.Properties()
+    holder["bsdf"] = mi.load_dict(surface(cube, color))
+    mesh = mi.Mesh("triangle", 3, 1, props=holder)
+    numbers = mi.traverse(mesh)
+    numbers["vertex_positions"], numbers["faces"] = [-9, -5, 0, 9, -5, 0, 0, 9, 0], [0, 1, 2]
+    numbers.update()
+    mesh.add_attribute("vertex_rgb", 3, MINT * 3)
+    scene = host.plane({"type": "diffuse"}, light)
+    scene["plane"] = mesh
+    host.assert_mean(host.picture(scene), host.xyz_of(leaving(cube, MINT, light)))
+
+
 def test_textures_are_filtered_first_and_clamped_to_the_cube(cube) -> None:
     light = lights()["D65"]
     texels = np.array([[[0.2, 1.04, 0.6], [0.6, 0.96, 1.0]]], np.float32)

@@ -90,8 +90,8 @@ def _found(kind: str, value: Any, cube: Cube) -> str | None:
     name = value.class_name()
     if not isinstance(value, mi.Texture):
         return f"a {name}"
-    if name == "MeshAttribute":
-        return None  # It has no numbers before the mesh has it.
+    if name == "MeshAttribute":  # It has no numbers before the mesh has it.
+        return _upsampled_attribute(_name(value))
     if name == "RawConstantTexture":
         numbers = np.ravel(mi.traverse(value)["value"])
         return "a texture of one number" if numbers.size == 1 else _problem(numbers[None])
@@ -114,14 +114,30 @@ def _without_colors(texture: Any) -> str:
     return "a bitmap without raw=true, which the renderer has already upsampled"
 
 
+def _name(texture: Any) -> str:
+    """The name of a bitmap's file or of a mesh's attribute; empty for numbers in memory."""
+    found = re.search(r'name = "(.*)"', str(texture))
+    return "" if found is None else found[1]
+
+
+def _upsampled_attribute(name: str) -> str | None:
+    """What an attribute is that Mitsuba upsamples because of its name; None for another one."""
+    if "color" not in name:
+        return None
+    return (
+        f"the mesh attribute {name}, which the renderer has already upsampled because its name "
+        f'contains "color" ({name.replace("color", "rgb")} would keep its numbers)'
+    )
+
+
 def _encoded(texture: Any, cube: Cube) -> str | None:
     """Whether the texture is a file in a format for screens, and how to convert it."""
-    name = re.search(r'name = "(.*)"', str(texture))
-    if name is None or not name[1].lower().endswith(_ENCODED):
+    name = _name(texture)
+    if not name.lower().endswith(_ENCODED):
         return None
-    output = PurePath(name[1]).with_suffix(".exr")
+    output = PurePath(name).with_suffix(".exr")
     return (
-        f"{name[1]}, a picture encoded for a screen (upglow bake CUBE {name[1]} --output {output} "
+        f"{name}, a picture encoded for a screen (upglow bake CUBE {name} --output {output} "
         f"--as radiance --light {cube.contract.illuminant.name} converts it)"
     )
 
