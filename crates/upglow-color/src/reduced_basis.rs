@@ -4,7 +4,9 @@ use crate::colorimetry::Colorimetry;
 use crate::contract::{Contract, ContractError};
 use crate::grid::Grid;
 use crate::illuminant::Illuminant;
+use crate::matrix::Matrix3;
 use crate::reduced_matrix::{Reduction, Xyzu};
+use crate::rgb_space::RgbSpace;
 
 /// Four parts of a contract's light, by which a light given as X, Y, Z and ultraviolet is taken for a spectrum, so
 /// that materials act on it by 4×4 matrices.
@@ -179,6 +181,17 @@ impl ReducedBasis {
         let seen = self.contract.seen_under(light, self.grid).colorimetry;
         let [x, y, z] = seen.white().0;
         Xyzu([x, y, z, self.u(seen_by_u(&seen).white().0[0])])
+    }
+
+    /// The matrix to linear RGB of an engine that keeps light in `engine`, where red, green and blue are 1 in
+    /// the contract's light. [`Xyzu::in_rgb`] and [`crate::ReducedMatrix::in_rgb`] take it.
+    ///
+    /// # Errors
+    ///
+    /// [`ContractError`] if the contract's light and observer do not fit the space.
+    pub fn rgb_from_xyz(&self, engine: &RgbSpace) -> Result<Matrix3, ContractError> {
+        let contract = Contract { space: engine.clone(), ..self.contract.clone() };
+        Ok(Colorimetry::try_new(&contract, self.grid)?.rgb_from_xyz_matrix())
     }
 
     /// The contract's light as four numbers.

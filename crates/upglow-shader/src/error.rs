@@ -1,7 +1,9 @@
 //! Why a cube has no shader.
 
+use upglow_color::{ContractError, ReducedBasisError};
+
 /// Why a cube has no shader.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ShaderError {
     /// The texture of the nodes would have more rows than drivers support.
@@ -18,4 +20,10 @@ pub enum ShaderError {
         /// The name given.
         found: String,
     },
+    /// The cube's light has no parts that matrices could be made of.
+    #[error(transparent)]
+    Basis(#[from] ReducedBasisError),
+    /// The engine's RGB space does not fit the cube's light.
+    #[error(transparent)]
+    Engine(#[from] ContractError),
 }

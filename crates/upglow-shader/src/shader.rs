@@ -4,15 +4,15 @@ use std::f32::consts::LN_10;
 use std::fmt::Write as _;
 
 use upglow::{Accounting, AnalyticModel, Cube, FilmModel, Model};
-use upglow_color::Grid;
 use upglow_color::rounding::to_single;
+use upglow_color::{Grid, Illuminant, ReducedBasis, RgbSpace};
 
 use crate::error::ShaderError;
 use crate::javascript::module;
 use crate::language::Language;
 use crate::payload::{HEADER_BYTES, TEXEL_BYTES, checksum, payload};
-use crate::template::functions;
-use crate::textures::{BINS, Texture, curves, film_curves, nodes};
+use crate::template::{functions, matrix_functions};
+use crate::textures::{BINS, Texture, curves, film_curves, matrices, nodes};
 use crate::tiff::tiff;
 use crate::translation::translate;
 
@@ -66,28 +66,93 @@ impl Shader {
     /// [`ShaderError`] if the cube has more than 90 nodes along an axis, or `name` is not made of
     /// letters, digits, `.`, `-` and `_`.
     pub fn new(cube: &Cube, language: Language, name: &str) -> Result<Self, ShaderError> {
-        let is_plain = |c: char| c.is_alphanumeric() || ['.', '-', '_'].contains(&c);
-        if name.is_empty() || !name.chars().all(is_plain) {
-            return Err(ShaderError::Name { found: name.into() });
-        }
         let nodes = nodes(cube)?;
         let curves = match cube.model() {
             Model::Dyes(dyes) => Some(curves(dyes)),
             Model::Film(film) => Some(film_curves(film)),
             Model::Reflectance | Model::Analytic(_) => None,
         };
-        let payload = payload_files(cube, language, name, &nodes, curves.as_ref());
-        let checksum = checksum(&nodes, curves.as_ref());
-        let mut source = heading(cube, language, &payload, checksum);
-        let constants = translate(&constants(cube), language);
-        let functions = fetches(language, name, &nodes, curves.as_ref())
-            + &translate(&functions(cube.model(), language), language);
+        let contents = Contents {
+            subject: format!("Spectral materials for {}.", colors(cube)),
+            nodes,
+            curves,
+            constants: constants(cube),
+            functions: functions(cube.model(), language),
+        };
+        contents.shader(cube, language, name)
+    }
+
+    /// A shader for engines without spectra: the 4×4 matrix of a color, by which its material acts on light of four
+    /// numbers, linear red, green and blue in `engine` and ultraviolet. Its files are called `name` with a suffix.
+    ///
+    /// # Errors
+    ///
+    /// [`ShaderError`] as for [`Shader::new`], and if the cube's light cannot be divided into four parts.
+    pub fn of_matrices(
+        cube: &Cube,
+        engine: &RgbSpace,
+        language: Language,
+        name: &str,
+    ) -> Result<Self, ShaderError> {
+        let basis = ReducedBasis::try_new(cube.contract(), Grid::FIT)?;
+        let rgb_from_xyz = basis.rgb_from_xyz(engine)?;
+        let table = cube.reduced_table(&basis).in_rgb(rgb_from_xyz);
+        let mut subject = format!(
+            "Matrices for {}, by which their materials act on light as\nlinear {} and ultraviolet:",
+            colors(cube),
+            engine.name(),
+        );
+        for light in [Illuminant::named("A"), Illuminant::named("FL11")].into_iter().flatten() {
+            let numbers = basis.light(&light).in_rgb(rgb_from_xyz).0.map(|v| format!("{v:.4}"));
+            // Writing to a string does not fail.
+            let _ = write!(subject, "\n{:<5} {}", light.name(), numbers.join(" "));
+        }
+        let contents = Contents {
+            subject,
+            nodes: matrices(cube, &table)?,
+            curves: None,
+            constants: resolution(cube),
+            functions: matrix_functions(language),
+        };
+        contents.shader(cube, language, name)
+    }
+}
+
+/// What a shader is made of.
+struct Contents {
+    /// What the functions are for, a sentence.
+    subject: String,
+    nodes: Texture,
+    curves: Option<Texture>,
+    /// In the templates' dialect, as the functions.
+    constants: String,
+    functions: String,
+}
+
+impl Contents {
+    fn shader(&self, cube: &Cube, language: Language, name: &str) -> Result<Shader, ShaderError> {
+        let is_plain = |c: char| c.is_alphanumeric() || ['.', '-', '_'].contains(&c);
+        if name.is_empty() || !name.chars().all(is_plain) {
+            return Err(ShaderError::Name { found: name.into() });
+        }
+        let Self { subject, nodes, constants, functions, .. } = self;
+        let curves = self.curves.as_ref();
+        let payload = payload_files(cube, language, name, nodes, curves);
+        let checksum = checksum(nodes, curves);
+        let mut source = heading(cube, subject, language, &payload, checksum, curves.is_some());
+        let constants = translate(constants, language);
+        let functions = fetches(language, name, nodes, curves) + &translate(functions, language);
         source += &match language {
             Language::JavaScript => module(&constants, &functions, &payload[0], checksum),
             _ => constants + "\n" + &functions,
         };
-        Ok(Self { source, payload })
+        Ok(Shader { source, payload })
     }
+}
+
+/// The colors that functions take, in words.
+fn colors(cube: &Cube) -> String {
+    format!("linear {} colors", cube.contract().space.name())
 }
 
 fn payload_files(
@@ -107,7 +172,14 @@ fn payload_files(
 }
 
 /// The comment at the top: what made the text, from what, and how to bind it.
-fn heading(cube: &Cube, language: Language, payload: &[PayloadFile], checksum: u64) -> String {
+fn heading(
+    cube: &Cube,
+    subject: &str,
+    language: Language,
+    payload: &[PayloadFile],
+    checksum: u64,
+    has_curves: bool,
+) -> String {
     let contract = cube.contract();
     let names: Vec<&str> = payload.iter().map(|file| file.name.as_str()).collect();
     let mut text = String::new();
@@ -118,7 +190,7 @@ fn heading(cube: &Cube, language: Language, payload: &[PayloadFile], checksum: u
     line(&format!("Made by upglow {}; do not edit.", env!("CARGO_PKG_VERSION")));
     line("SPDX-License-Identifier: MIT OR Apache-2.0");
     line("");
-    line(&format!("Spectral materials for linear {} colors.", contract.space.name()));
+    subject.lines().for_each(&mut line);
     line(&format!(
         "{} nodes an axis, model {}, light {}, observer {}.",
         cube.resolution(),
@@ -127,7 +199,7 @@ fn heading(cube: &Cube, language: Language, payload: &[PayloadFile], checksum: u
         contract.observer.name()
     ));
     line(&format!("Reads {}; checksum {checksum:016x}.", names.join(", ")));
-    binding(language, cube.model().dyes().is_some()).lines().for_each(line);
+    binding(language, has_curves).lines().for_each(line);
     text.push('\n');
     text
 }
@@ -161,14 +233,18 @@ fn binding(language: Language, has_curves: bool) -> String {
     }
 }
 
+/// The number of nodes along an axis, in the templates' dialect.
+fn resolution(cube: &Cube) -> String {
+    format!("const UPGLOW_RESOLUTION: i32 = {};\n", cube.resolution())
+}
+
 /// The constants of this cube, in the templates' dialect.
 fn constants(cube: &Cube) -> String {
-    let mut text = String::new();
+    let mut text = resolution(cube);
     let mut number = |name: &str, kind: &str, value: &str| {
         // Writing to a string does not fail.
         let _ = writeln!(text, "const UPGLOW_{name}: {kind} = {value};");
     };
-    number("RESOLUTION", "i32", &cube.resolution().to_string());
     number("FARTHEST_NM", "f32", &float(FARTHEST_NM));
     if *cube.model() != Model::Reflectance {
         number("BELOW_ONE", "f32", &float(BELOW_ONE));

@@ -13,6 +13,7 @@ const FILM: &str = include_str!("templates/film.wgsl");
 const BELLS: &str = include_str!("templates/bells.wgsl");
 const EVALUATION: &str = include_str!("templates/evaluation.wgsl");
 const SAMPLING: &str = include_str!("templates/sampling.wgsl");
+const MATRIX: &str = include_str!("templates/matrix.wgsl");
 
 /// The functions that a model needs, in the templates' dialect, each before it is called.
 pub(crate) fn functions(model: &Model, language: Language) -> String {
@@ -31,6 +32,11 @@ pub(crate) fn functions(model: &Model, language: Language) -> String {
 /// The functions that find the nodes around a color, without their materials, in the templates' dialect.
 pub(crate) fn places(language: Language) -> String {
     kept(MATERIAL, &["place", language.name()])
+}
+
+/// The functions that make the matrix of a color, in the templates' dialect.
+pub(crate) fn matrix_functions(language: Language) -> String {
+    places(language) + "\n" + MATRIX
 }
 
 /// The conditions of template lines that hold for a model.
@@ -76,7 +82,8 @@ mod tests {
         assert_eq!(kept(template, &[]), "a\nd\n");
     }
 
-    const TEMPLATES: [&str; 8] = [MATERIAL, SHARE, CURVES, DYES, FILM, BELLS, EVALUATION, SAMPLING];
+    const TEMPLATES: [&str; 9] =
+        [MATERIAL, SHARE, CURVES, DYES, FILM, BELLS, EVALUATION, SAMPLING, MATRIX];
 
     #[test]
     fn every_condition_is_closed_and_a_trait_of_some_shader() {

@@ -1,6 +1,6 @@
 //! A cube's numbers as two textures of four floats per texel.
 
-use upglow::{Cube, DyeModel, FilmModel};
+use upglow::{Cube, DyeModel, FilmModel, ReducedTable};
 use upglow_color::rounding::to_single;
 use upglow_color::{Grid, Spectrum};
 
@@ -37,12 +37,30 @@ impl Texture {
 ///
 /// [`ShaderError::Resolution`] if the texture would have more rows than drivers support.
 pub(crate) fn nodes(cube: &Cube) -> Result<Texture, ShaderError> {
+    let texels = cube.packed_nodes().map(|node| [node.reflectance, node.fluorescence]);
+    of_nodes(cube, texels)
+}
+
+/// The matrices of the nodes: texel (4·red + row, blue·n + green).
+///
+/// # Errors
+///
+/// [`ShaderError::Resolution`] if the texture would have more rows than drivers support.
+pub(crate) fn matrices(cube: &Cube, table: &ReducedTable) -> Result<Texture, ShaderError> {
+    let rows = |numbers: [f32; 16]| [0, 1, 2, 3].map(|r| [0, 1, 2, 3].map(|c| numbers[4 * r + c]));
+    of_nodes(cube, table.nodes().map(rows))
+}
+
+/// As many texels side by side for each node.
+fn of_nodes<const N: usize>(
+    cube: &Cube,
+    texels: impl Iterator<Item = [[f32; 4]; N]>,
+) -> Result<Texture, ShaderError> {
     let n = cube.resolution();
     if n * n > MOST_TEXELS {
         return Err(ShaderError::Resolution { found: n, most: MOST_TEXELS.isqrt() });
     }
-    let texels = cube.packed_nodes().flat_map(|node| [node.reflectance, node.fluorescence]);
-    Ok(Texture { width: 2 * n, texels: texels.collect() })
+    Ok(Texture { width: N * n, texels: texels.flatten().collect() })
 }
 
 /// The curves of a ring of dyes: texel (2·dye + part, sample).

@@ -13,7 +13,7 @@ use upglow::{
     FilmModel, FitRecord, Fluorescence, Interpolation, Mixing, Mixture, Model, Node, QuantumYield,
     Sample,
 };
-use upglow_color::{Contract, LinearRgb};
+use upglow_color::{Contract, Grid, LinearRgb, ReducedBasis, RgbSpace};
 use upglow_shader::{ColorTexture, Language, Shader, color_node};
 
 use crate::support::{python, runs};
@@ -167,7 +167,7 @@ impl Query {
 }
 
 impl Answer {
-    fn from_numbers(a: &[f64]) -> Self {
+    fn from_numbers(a: &[f64; 16]) -> Self {
         let drawn =
             |a: &[f64]| Drawn { nm: a[0], throughput: a[1], pdf: a[2], elastic: a[3] == 1.0 };
         Self {
@@ -336,9 +336,9 @@ fn glslang(language: Language) -> Option<(&'static [&'static str], &'static str)
     }
 }
 
-/// Writes the shader of a cube and its queries; compiles it where the driver takes no source.
-fn prepare(folder: &Path, cube: &Cube, language: Language, queries: &[Query]) {
-    let shader = Shader::new(cube, language, "shader").unwrap();
+/// Writes a shader, named "shader", its queries and the program `main` that answers them; compiles it where the
+/// driver takes no source.
+fn prepare(folder: &Path, shader: &Shader, main: &str, language: Language, queries: &[Query]) {
     fs::create_dir(folder).unwrap();
     for file in &shader.payload {
         fs::write(folder.join(&file.name), &file.bytes).unwrap();
@@ -350,7 +350,7 @@ fn prepare(folder: &Path, cube: &Cube, language: Language, queries: &[Query]) {
         Language::Osl => osl_paths(folder),
         _ => before.to_owned(),
     };
-    let main = fs::read_to_string(here(&format!("main.{language}"))).unwrap();
+    let main = fs::read_to_string(here(&format!("{main}.{language}"))).unwrap();
     let source = folder.join(format!("main.{language}"));
     fs::write(&source, format!("{before}{}{main}", shader.source)).unwrap();
     if !arguments.is_empty() {
@@ -373,7 +373,7 @@ fn osl_paths(folder: &Path) -> String {
     files.into_iter().map(line).collect()
 }
 
-fn read_answers(folder: &Path) -> Vec<Answer> {
+fn read_answers(folder: &Path) -> Vec<[f64; 16]> {
     let single = |bytes: &[u8]| f64::from(f32::from_le_bytes(bytes.try_into().unwrap()));
     let double = |bytes: &[u8]| f64::from_le_bytes(bytes.try_into().unwrap());
     let numbers: Vec<f64> = match fs::read(folder.join("answers.f64")) {
@@ -383,7 +383,7 @@ fn read_answers(folder: &Path) -> Vec<Answer> {
             bytes.chunks_exact(4).map(single).collect()
         }
     };
-    numbers.chunks_exact(16).map(Answer::from_numbers).collect()
+    numbers.as_chunks().0.to_vec()
 }
 
 /// Makes Node read `.js` as modules, as browsers do.
@@ -402,22 +402,22 @@ fn runner(language: Language) -> Result<Command, String> {
 }
 
 /// What a shader was asked and answered.
-type Answered = (Vec<Query>, Vec<Answer>);
+type Answered = (Vec<Query>, Vec<[f64; 16]>);
 
-/// The results of each cube's shader, or why they are missing.
-fn answers(language: Language, cubes: &[Cube]) -> Result<Vec<Answered>, String> {
+/// What the program `main` makes of each shader, or why that is missing.
+fn answers(language: Language, shaders: &[Shader], main: &str) -> Result<Vec<Answered>, String> {
     let mut command = runner(language)?;
     if glslang(language).is_some() && !runs("glslangValidator") {
         return Err("no glslangValidator".into());
     }
     let folder = tempfile::tempdir().unwrap();
     let at = |i: usize| folder.path().join(i.to_string());
-    let asked: Vec<Vec<Query>> = (0..).take(cubes.len()).map(queries).collect();
-    for (i, (cube, asked)) in cubes.iter().zip(&asked).enumerate() {
-        prepare(&at(i), cube, language, asked);
+    let asked: Vec<Vec<Query>> = (0..).take(shaders.len()).map(queries).collect();
+    for (i, (shader, asked)) in shaders.iter().zip(&asked).enumerate() {
+        prepare(&at(i), shader, main, language, asked);
     }
     fs::write(folder.path().join("package.json"), ES_MODULES).unwrap();
-    let output = command.args((0..cubes.len()).map(at)).output().unwrap();
+    let output = command.args((0..shaders.len()).map(at)).output().unwrap();
     let failed = String::from_utf8_lossy(&output.stderr);
     if failed.contains(NO_DRIVER) {
         return Err(NO_DRIVER.into());
@@ -641,10 +641,16 @@ fn assert_mixes_nodes((query, answer): (&Query, &Answer)) {
 
 fn check_language(language: Language, test: &str) {
     let cubes = cubes();
-    let answered = match answers(language, &cubes) {
+    let shaders: Vec<Shader> =
+        cubes.iter().map(|cube| Shader::new(cube, language, "shader").unwrap()).collect();
+    let answered = match answers(language, &shaders, "main") {
         Ok(answered) => answered,
         Err(reason) => return println!("skipped: {test}, {reason}"),
     };
+    let with_names = |(queries, numbers): Answered| {
+        (queries, numbers.iter().map(Answer::from_numbers).collect::<Vec<Answer>>())
+    };
+    let answered: Vec<_> = answered.into_iter().map(with_names).collect();
     let mut errors = Errors::default();
     for (cube, (queries, answers)) in cubes.iter().zip(&answered) {
         check(language, cube, queries, answers, &mut errors);
@@ -681,6 +687,67 @@ fn javascript_answers_what_the_library_answers() {
 #[test]
 fn osl_answers_what_the_library_answers() {
     check_language(Language::Osl, "osl_answers_what_the_library_answers");
+}
+
+/// Compares the matrices of a shader with the library's, for an engine of other primaries than the cube's.
+fn check_matrices(language: Language, test: &str) {
+    // Single precision of numbers up to 4, and in OSL of these with 8 added.
+    let rounding = if language == Language::Osl { 5e-6 } else { 1e-6 };
+    let cubes = &cubes()[..4];
+    let engine = RgbSpace::named("rec709").unwrap();
+    let shader = |cube| Shader::of_matrices(cube, &engine, language, "shader").unwrap();
+    let shaders: Vec<Shader> = cubes.iter().map(shader).collect();
+    let answered = match answers(language, &shaders, "matrix") {
+        Ok(answered) => answered,
+        Err(reason) => return println!("skipped: {test}, {reason}"),
+    };
+    let mut greatest = 0.0_f64;
+    for (cube, (queries, answers)) in cubes.iter().zip(&answered) {
+        assert_eq!(queries.len(), answers.len());
+        let basis = ReducedBasis::try_new(cube.contract(), Grid::FIT).unwrap();
+        let table = cube.reduced_table(&basis).in_rgb(basis.rgb_from_xyz(&engine).unwrap());
+        for (query, answer) in queries.iter().zip(answers) {
+            // What is outside counts as the nearer end, and NaN as 0.
+            let inside = query.rgb.map(|v| if v > 0.0 { v.min(1.0) } else { 0.0 });
+            let expected = table.matrix(inside).unwrap();
+            let (columns, _) = answer.as_chunks::<4>();
+            for (row, column) in (0..4).flat_map(|row| (0..4).map(move |column| (row, column))) {
+                let (asked, shift) = match language {
+                    Language::Osl => ((row, column) != (3, 3), 8.0),
+                    _ => (true, 0.0),
+                };
+                let error = columns[column][row] - shift - f64::from(expected[row][column]);
+                assert!(!asked || error.abs() < rounding, "{query:?}: {answer:?} {expected:?}");
+                greatest = greatest.max(if asked { error.abs() } else { 0.0 });
+            }
+        }
+    }
+    println!("{language}: matrices differ by at most {greatest:e}");
+}
+
+#[test]
+fn matrices_are_the_library_s_in_wgsl() {
+    check_matrices(Language::Wgsl, "matrices_are_the_library_s_in_wgsl");
+}
+
+#[test]
+fn matrices_are_the_library_s_in_glsl() {
+    check_matrices(Language::Glsl, "matrices_are_the_library_s_in_glsl");
+}
+
+#[test]
+fn matrices_are_the_library_s_in_hlsl() {
+    check_matrices(Language::Hlsl, "matrices_are_the_library_s_in_hlsl");
+}
+
+#[test]
+fn matrices_are_the_library_s_in_javascript() {
+    check_matrices(Language::JavaScript, "matrices_are_the_library_s_in_javascript");
+}
+
+#[test]
+fn matrices_are_the_library_s_in_osl() {
+    check_matrices(Language::Osl, "matrices_are_the_library_s_in_osl");
 }
 
 /// The colors that the node returns, per query.
