@@ -76,7 +76,7 @@ typedef struct UpglowColors UpglowColors;
 // use it at once.
 typedef struct UpglowCube UpglowCube;
 
-// The materials of a cube as 4x4 matrices of light given as X, Y, Z and ultraviolet. It is immutable:
+// The materials of a cube as 4x4 matrices of light given by four numbers: three of color, and ultraviolet. It is immutable:
 // any number of threads may use it at once. It does not refer to the cube.
 typedef struct UpglowMatrices UpglowMatrices;
 
@@ -369,15 +369,19 @@ UpglowStatus upglow_xyz(const UpglowColors *colors,
 // Computes the matrices of a cube's materials. `docs/rgb-engines.md` of the sources has the equation
 // and the errors.
 //
+// `engine` is the name of the RGB space that an engine keeps light in, as for `upglow build --space`:
+// light is then linear red, green and blue, each 1 in the cube's own light, and U. Null: X, Y, Z and U.
+//
 // `*matrices` receives matrices that the caller owns and must destroy with
 // `upglow_matrices_destroy`. All memory for `upglow_reduced_matrix` is allocated here: 64 bytes per
 // node of the cube.
 //
 // Fails with `UPGLOW_STATUS_INVALID_ARGUMENT` if the light of the cube has next to no blue, green or
-// red.
+// red, or there is no such RGB space.
 //
-// Pointers are null or point to a cube and to room for a pointer.
+// Pointers are null or point to a cube, to text that ends with a zero byte and to room for a pointer.
 UpglowStatus upglow_matrices_create(const UpglowCube *cube,
+                                    const char *engine,
                                     UpglowMatrices **matrices);
 
 // Frees matrices; null is allowed and does nothing. No other thread may be using them.
@@ -385,7 +389,7 @@ UpglowStatus upglow_matrices_create(const UpglowCube *cube,
 // `matrices` is null or came from `upglow_matrices_create`, and was not destroyed before.
 void upglow_matrices_destroy(UpglowMatrices *matrices);
 
-// The matrix of a color's material: `matrix` is `[4][4]`, outgoing and incident X, Y, Z, U. Its
+// The matrix of a color's material: `matrix` is `[4][4]`, outgoing and incident, each X, Y, Z, U or R, G, B, U. Its
 // product with the four numbers of a light is what leaves. Matrices may be interpolated and filtered.
 //
 // `rgb` is red, green and blue, linear, in the cube's space.
@@ -397,7 +401,7 @@ UpglowStatus upglow_reduced_matrix(const UpglowMatrices *matrices,
                                    const float *rgb,
                                    float *matrix);
 
-// X, Y, Z and U of a built-in light, named as for `upglow_colors_create`, or of the cube's own if
+// X, Y, Z and U, or R, G, B and U, of a built-in light, named as for `upglow_colors_create`, or of the cube's own if
 // `illuminant` is null: `light` is `[4]`. A perfect diffuser has Y = 1; light too dark to see by, such
 // as an ultraviolet lamp's, has as much power as the cube's own. D65 has U = 1. It allocates memory,
 // and frees it.

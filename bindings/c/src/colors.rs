@@ -93,13 +93,27 @@ pub unsafe extern "C" fn upglow_colors_create_sampled(
 ///
 /// It is null or points to text that ends with a zero byte.
 pub(crate) unsafe fn named_light(illuminant: *const c_char) -> Result<Option<Illuminant>, Failure> {
-    if illuminant.is_null() {
+    // SAFETY: the caller promises it.
+    unsafe { named(illuminant, "illuminant", Illuminant::named) }
+}
+
+/// What is built in under this name; `None` if it is null.
+///
+/// # Safety
+///
+/// It is null or points to text that ends with a zero byte.
+pub(crate) unsafe fn named<T, E: Into<Failure>>(
+    name: *const c_char,
+    argument: &'static str,
+    find: impl Fn(&str) -> Result<T, E>,
+) -> Result<Option<T>, Failure> {
+    if name.is_null() {
         return Ok(None);
     }
-    let argument = "illuminant";
     // SAFETY: the caller promises it.
-    let name = unsafe { text(illuminant, argument)? }.to_str();
-    Ok(Some(Illuminant::named(name.map_err(|_| Failure::NotText { argument })?)?))
+    let name = unsafe { text(name, argument)? }.to_str();
+    let name = name.map_err(|_| Failure::NotText { argument })?;
+    find(name).map(Some).map_err(Into::into)
 }
 
 impl UpglowColors {

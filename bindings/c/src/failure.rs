@@ -7,7 +7,7 @@ use std::fmt::{self, Write};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use upglow::{CubeFileError, LookupError, ReadCubeError};
-use upglow_color::{ContractError, IlluminantError, ReducedBasisError};
+use upglow_color::{ContractError, IlluminantError, ReducedBasisError, RgbSpaceError};
 
 /// How a call ended. On any status but `UPGLOW_STATUS_OK` the call has not written its results, and
 /// `upglow_message` returns the reason.
@@ -57,6 +57,8 @@ pub(crate) enum Failure {
     Contract(#[from] ContractError),
     #[error(transparent)]
     ReducedBasis(#[from] ReducedBasisError),
+    #[error(transparent)]
+    RgbSpace(#[from] RgbSpaceError),
 }
 
 impl Failure {

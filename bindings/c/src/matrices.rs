@@ -4,19 +4,21 @@ use std::ffi::c_char;
 
 use upglow::ReducedTable;
 use upglow_color::rounding::to_single;
-use upglow_color::{Grid, ReducedBasis};
+use upglow_color::{Grid, Matrix3, ReducedBasis, RgbSpace};
 
-use crate::colors::named_light;
+use crate::colors::{named, named_light};
 use crate::cube::UpglowCube;
 use crate::failure::{UpglowStatus, guarded};
 use crate::pointer::{Output, array, assert_shared_by_threads, borrowed, destroy};
 
-/// The materials of a cube as 4x4 matrices of light given as X, Y, Z and ultraviolet. It is immutable:
+/// The materials of a cube as 4x4 matrices of light given by four numbers: three of color, and ultraviolet. It is immutable:
 /// any number of threads may use it at once. It does not refer to the cube.
 #[derive(Debug)]
 pub struct UpglowMatrices {
     basis: ReducedBasis,
     table: ReducedTable,
+    /// For an engine in an RGB space.
+    rgb_from_xyz: Option<Matrix3>,
 }
 
 const _: () = assert_shared_by_threads::<UpglowMatrices>();
@@ -24,28 +26,40 @@ const _: () = assert_shared_by_threads::<UpglowMatrices>();
 /// Computes the matrices of a cube's materials. `docs/rgb-engines.md` of the sources has the equation
 /// and the errors.
 ///
+/// `engine` is the name of the RGB space that an engine keeps light in, as for `upglow build --space`:
+/// light is then linear red, green and blue, each 1 in the cube's own light, and U. Null: X, Y, Z and U.
+///
 /// `*matrices` receives matrices that the caller owns and must destroy with
 /// `upglow_matrices_destroy`. All memory for `upglow_reduced_matrix` is allocated here: 64 bytes per
 /// node of the cube.
 ///
 /// Fails with `UPGLOW_STATUS_INVALID_ARGUMENT` if the light of the cube has next to no blue, green or
-/// red.
+/// red, or there is no such RGB space.
 ///
 /// # Safety
 ///
-/// Pointers are null or point to a cube and to room for a pointer.
+/// Pointers are null or point to a cube, to text that ends with a zero byte and to room for a pointer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn upglow_matrices_create(
     cube: *const UpglowCube,
+    engine: *const c_char,
     matrices: *mut *mut UpglowMatrices,
 ) -> UpglowStatus {
     guarded(|| {
         // SAFETY: the caller keeps this function's promise.
         let (cube, output) =
             unsafe { (borrowed(cube, "cube")?, Output::new(matrices, "matrices")?) };
+        // SAFETY: the same.
+        let engine = unsafe { named(engine, "engine", RgbSpace::named)? };
         let basis = ReducedBasis::try_new(cube.cube.contract(), Grid::FIT)?;
+        let rgb_from_xyz = engine.map(|space| basis.rgb_from_xyz(&space)).transpose()?;
         let table = cube.cube.reduced_table(&basis);
-        output.write(Box::into_raw(Box::new(UpglowMatrices { basis, table })));
+        let table = match rgb_from_xyz {
+            Some(rgb_from_xyz) => table.in_rgb(rgb_from_xyz),
+            None => table,
+        };
+        let made = UpglowMatrices { basis, table, rgb_from_xyz };
+        output.write(Box::into_raw(Box::new(made)));
         Ok(())
     })
 }
@@ -61,7 +75,7 @@ pub unsafe extern "C" fn upglow_matrices_destroy(matrices: *mut UpglowMatrices) 
     unsafe { destroy(matrices) };
 }
 
-/// The matrix of a color's material: `matrix` is `[4][4]`, outgoing and incident X, Y, Z, U. Its
+/// The matrix of a color's material: `matrix` is `[4][4]`, outgoing and incident, each X, Y, Z, U or R, G, B, U. Its
 /// product with the four numbers of a light is what leaves. Matrices may be interpolated and filtered.
 ///
 /// `rgb` is red, green and blue, linear, in the cube's space.
@@ -88,7 +102,7 @@ pub unsafe extern "C" fn upglow_reduced_matrix(
     })
 }
 
-/// X, Y, Z and U of a built-in light, named as for `upglow_colors_create`, or of the cube's own if
+/// X, Y, Z and U, or R, G, B and U, of a built-in light, named as for `upglow_colors_create`, or of the cube's own if
 /// `illuminant` is null: `light` is `[4]`. A perfect diffuser has Y = 1; light too dark to see by, such
 /// as an ultraviolet lamp's, has as much power as the cube's own. D65 has U = 1. It allocates memory,
 /// and frees it.
@@ -113,6 +127,7 @@ pub unsafe extern "C" fn upglow_reduced_light(
         // SAFETY: the same.
         let named = unsafe { named_light(illuminant)? };
         let numbers = named.map_or(matrices.basis.white(), |light| matrices.basis.light(&light));
+        let numbers = matrices.rgb_from_xyz.map_or(numbers, |rgb| numbers.in_rgb(rgb));
         output.write(numbers.0.map(to_single));
         Ok(())
     })

@@ -216,10 +216,19 @@ static void matrices_of_colors(const UpglowCube *cube) {
     float matrix[4][4], light[4] = {7};
     UpglowMatrices *matrices = NULL;
     matrix[0][0] = 7;
-    REFUSED(upglow_matrices_create(NULL, &matrices), null);
-    REFUSED(upglow_matrices_create(cube, NULL), null);
+    REFUSED(upglow_matrices_create(NULL, NULL, &matrices), null);
+    REFUSED(upglow_matrices_create(cube, NULL, NULL), null);
+    REFUSED(upglow_matrices_create(cube, "rgb", &matrices), invalid);
+    REFUSED(upglow_matrices_create(cube, "\xff", &matrices), invalid);
     HOLDS(matrices == NULL);
-    ACCEPTED(upglow_matrices_create(cube, &matrices));
+    ACCEPTED(upglow_matrices_create(cube, "rec709", &matrices));
+    ACCEPTED(upglow_reduced_light(matrices, NULL, light));
+    for (int i = 0; i < 4; i++) {
+        HOLDS(fabsf(light[i] - 1) < 1e-6f);
+    }
+    upglow_matrices_destroy(matrices);
+    light[0] = 7;
+    ACCEPTED(upglow_matrices_create(cube, NULL, &matrices));
     REFUSED(upglow_reduced_matrix(NULL, rgb, matrix[0]), null);
     REFUSED(upglow_reduced_matrix(matrices, NULL, matrix[0]), null);
     REFUSED(upglow_reduced_matrix(matrices, rgb, NULL), null);

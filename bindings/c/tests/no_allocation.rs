@@ -89,7 +89,7 @@ fn assert_allocates_nothing(cube: *mut UpglowCube) {
     unsafe { upglow_colors_create(cube, null(), &raw mut colors) };
     let mut matrices = null_mut();
     // SAFETY: the same.
-    unsafe { upglow_matrices_create(cube, &raw mut matrices) };
+    unsafe { upglow_matrices_create(cube, null(), &raw mut matrices) };
     let mut matrix = [0.0_f32; 16];
     let mut material = MaybeUninit::<UpglowMaterial>::uninit();
     let mut sample = MaybeUninit::<UpglowSample>::uninit();

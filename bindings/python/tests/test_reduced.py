@@ -46,6 +46,29 @@ def test_lights_have_daylights_ultraviolet_as_their_unit(any_cube) -> None:
     assert any_cube.reduced_light("D65-cut400")[3] < any_cube.reduced_light("D65")[3]
 
 
+@pytest.mark.parametrize("engine", ["rec709", "acescg", [0.7, 0.3, 0.2, 0.7, 0.1, 0.1, 0.33, 0.33]])
+def test_an_engine_has_light_of_its_own_primaries(any_cube, rgb, engine) -> None:
+    own = any_cube.contract
+    contract = upglow.Contract(
+        space=engine,
+        illuminant=own.illuminant,
+        observer=own.observer,
+        adaptation=own.adaptation,
+    )
+    np.testing.assert_allclose(any_cube.reduced_light(engine=engine), 1.0, atol=1e-9)
+    for light in [None, "A"]:
+        seen = any_cube.reduced_matrix(rgb) @ any_cube.reduced_light(light)
+        found = any_cube.reduced_matrix(rgb, engine=engine) @ any_cube.reduced_light(
+            light, engine=engine
+        )
+        # Rounding only, of numbers up to 10 and of an inverse.
+        expected = seen[..., :3] @ contract.rgb_from_xyz.T
+        np.testing.assert_allclose(found[..., :3], expected, atol=1e-12)
+        np.testing.assert_allclose(found[..., 3], seen[..., 3], atol=1e-12)
+    with pytest.raises(ValueError, match="unknown RGB space"):
+        any_cube.reduced_light(engine="rgb")
+
+
 def test_what_is_no_matrix_is_refused(any_cube) -> None:
     with pytest.raises(ValueError, match=r"matrices has shape \(3, 3\), expected \(..., 4, 4\)"):
         any_cube.without_ultraviolet(np.eye(3))

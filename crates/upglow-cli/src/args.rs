@@ -209,6 +209,10 @@ pub(crate) struct ColorArgs {
     pub(crate) lights: Vec<String>,
     #[command(flatten)]
     pub(crate) light: LightArgs,
+    /// Also show the material for an engine that keeps light in this RGB space, linear, and ultraviolet: its 4×4 matrix,
+    /// and the four numbers of the lights
+    #[arg(long, value_name = "SPACE", value_parser = rgb_space)]
+    pub(crate) engine: Option<RgbSpace>,
     /// Draw the curves of the material to this SVG file
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) plot: Option<PathBuf>,
@@ -251,6 +255,10 @@ pub(crate) struct ExportArgs {
     pub(crate) light: Option<String>,
     #[command(flatten)]
     pub(crate) light_file: LightArgs,
+    /// Write the 4×4 matrices of materials instead of their spectra, for an engine that keeps light in this RGB space,
+    /// linear, and ultraviolet (shaders only)
+    #[arg(long, value_name = "SPACE", value_parser = rgb_space)]
+    pub(crate) engine: Option<RgbSpace>,
     #[command(flatten)]
     pub(crate) threads: Threads,
 }

@@ -211,6 +211,24 @@ fn several_lights_give_a_picture_each() {
 }
 
 #[test]
+fn matrices_for_an_engine_are_a_picture_for_each_number_of_light() {
+    let folder = desk();
+    let told = folder.json("bake cube tile.exr -o x.exr --as rgbu --engine rec709");
+    let files: Vec<&str> =
+        told["pictures"].as_array().unwrap().iter().filter_map(|p| p["file"].as_str()).collect();
+    assert_eq!(files, ["x.red.exr", "x.green.exr", "x.blue.exr", "x.ultraviolet.exr"]);
+    assert_eq!(told["pictures"][3]["channels"], 4);
+    folder.done("bake cube tile.exr -o out --as rgbu --tx");
+    assert!(folder.path().join("out/tile.rgbu.ultraviolet.tx").exists());
+    let line = folder.refused(1, "read x.red.exr --at 0,0");
+    let expected =
+        "x.red.exr: parts of 4×4 matrices, expected a file baked as material or spectral";
+    assert_eq!(line, expected);
+    let line = folder.refused(2, "bake cube tile.exr -o y.exr --engine rec709");
+    assert_eq!(line, "--engine: given with --as material, expected --as rgbu");
+}
+
+#[test]
 fn textures_at_all_levels_are_named_tx_and_read_at_the_first() {
     let folder = desk();
     let made = folder.picture("bake cube tile.exr -o out --tx");
@@ -340,7 +358,7 @@ fn options_that_do_not_fit() {
     let cases = [
         (
             "bake cube tile.exr -o x.exr --as paint",
-            "--as: unknown form \"paint\", expected material, spectral or radiance",
+            "--as: unknown form \"paint\", expected material, spectral, radiance or rgbu",
         ),
         ("bake cube tile.exr -o x.exr --sample byte", "--sample: unknown kind of number \"byte\""),
         (

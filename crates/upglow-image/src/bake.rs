@@ -9,6 +9,7 @@ mod levels;
 mod maker;
 mod material;
 pub(crate) mod material_picture;
+pub(crate) mod matrix;
 mod output;
 pub(crate) mod png;
 mod radiance;
@@ -22,7 +23,7 @@ use std::path::Path;
 use rayon::prelude::*;
 use upglow::{Cube, LookupError};
 use upglow_color::rounding::to_single;
-use upglow_color::{Grid, Illuminant, LinearRgb};
+use upglow_color::{ContractError, Grid, Illuminant, LinearRgb, ReducedBasisError, RgbSpace};
 use upglow_fit::{ColoredLightError, FitOptionsError, KindCounts, StandingTable, Stopped, Watch};
 
 use self::compact::CompactMaker;
@@ -30,6 +31,7 @@ use self::hash::Hash;
 use self::levels::{LevelRows, Levels};
 use self::maker::{Filled, Maker};
 use self::material::MaterialMaker;
+use self::matrix::{Incident, MatrixMaker};
 use self::output::Output;
 use self::png::{PngBits, PngWriter};
 use self::radiance::RadianceMaker;
@@ -68,6 +70,13 @@ pub enum Form {
         /// The light, which is scaled to the power of the contract's light.
         light: Illuminant,
     },
+    /// Of the 4×4 matrix by which the material acts on light of four numbers, what becomes of one of them.
+    Matrix {
+        /// The RGB space that the engine keeps light in; `None` for the cube's.
+        engine: Option<RgbSpace>,
+        /// The number of the light that arrives.
+        incident: Incident,
+    },
     /// Color under a light as PNG in sRGB, as an observer sees it who is adapted to the light; see
     /// [`Contract::seen_under`](upglow_color::Contract::seen_under). Colors outside sRGB keep their
     /// luminance and hue and become grayer; above the luminance of white they are white.
@@ -100,13 +109,13 @@ impl Form {
         let light = match self {
             Self::Radiance { light } => light,
             Self::Spectral { .. } => &cube.contract().illuminant,
-            Self::Material | Self::InterpolatedMaterial | Self::Screen { .. } => return None,
+            _ => return None,
         };
         let colorimetry = radiance::colorimetry(cube, light);
         Some(ColoredLightError::check(&colorimetry, colorimetry.white()))
     }
 
-    /// The form that a baked file states: material, spectral or radiance.
+    /// The form that a baked file states: material, spectral, radiance or rgbu.
     pub fn stated(reader: &ExrReader) -> Option<&str> {
         reader.attributes().get(attributes::FORM)?.as_text()
     }
@@ -189,6 +198,12 @@ pub enum BakeError {
     /// The cube's dyes have no compact form.
     #[error(transparent)]
     Compact(#[from] FormError),
+    /// The cube's light has no parts that matrices could be made of.
+    #[error(transparent)]
+    Basis(#[from] ReducedBasisError),
+    /// The engine's RGB space does not fit the cube's light.
+    #[error(transparent)]
+    Engine(#[from] ContractError),
     /// A texel is outside the cube.
     #[error("texel {x},{y}{}", and_others(*.others))]
     Texel {
@@ -258,6 +273,9 @@ impl<'c> Baker<'c> {
             Form::Spectral { grid, compact: false } => Box::new(SpectralMaker::new(cube, grid)),
             Form::Spectral { grid, compact: true } => Box::new(CompactMaker::new(cube, grid)?),
             Form::Radiance { light } => Box::new(RadianceMaker::new(cube, light)),
+            Form::Matrix { engine, incident } => {
+                Box::new(MatrixMaker::new(cube, engine, incident)?)
+            }
             Form::Screen { light, exposure_stops, .. } => {
                 Box::new(ScreenMaker::new(cube, &light, exposure_stops))
             }

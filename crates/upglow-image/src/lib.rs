@@ -46,6 +46,7 @@ mod spectral;
 
 pub use bake::hash::Hash;
 pub use bake::material_picture::MaterialPicture;
+pub use bake::matrix::Incident;
 pub use bake::png::PngBits;
 pub use bake::repair::Repair;
 pub use bake::{BakeError, BakeOptions, Baked, Baker, Form, Layout};

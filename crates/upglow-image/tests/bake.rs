@@ -9,19 +9,19 @@ use std::sync::OnceLock;
 use tempfile::TempDir;
 use upglow::{
     Accounting, Cube, DyeModel, DyeOptions, DyeSet, FilmModel, Fluorescence, Interpolation,
-    Material, Mixture, Model, ModelOnGrid, Node, QuantumYield,
+    Material, Mixture, Model, ModelOnGrid, Node, QuantumYield, ReducedModel,
 };
 use upglow_color::{
-    Colorimetry, Contract, Grid, Illuminant, LinearRgb, RgbSpace, Xyz, ciede2000, lab_from_xyz,
-    srgb_encoded,
+    Choice as _, Colorimetry, Contract, Grid, Illuminant, LinearRgb, ReducedBasis, RgbSpace, Xyz,
+    ciede2000, lab_from_xyz, srgb_encoded,
 };
 use upglow_fit::{
     BlendKinds, CubeSummary, KindCounts, MaterialKind, Polisher, Preset, Unwatched, build_cube,
 };
 use upglow_image::{
     BakeError, BakeOptions, Baked, Baker, Declared, Encoding, ExamplePicture, ExrDescription,
-    ExrReader, ExrWriter, Form, Layout, Lint, MaterialPicture, Picture, PngBits, Repair, Sample,
-    SpectralPicture, SpectralTexel,
+    ExrReader, ExrWriter, Form, Incident, Layout, Lint, MaterialPicture, Picture, PngBits, Repair,
+    Sample, SpectralPicture, SpectralTexel,
 };
 
 const POLISHED: Form = Form::Material;
@@ -238,6 +238,33 @@ fn filtering_first_or_last_gives_the_same_radiance_where_corners_are_exact() {
     for (first, last) in first.iter().zip(last.chunks(BLOCK)) {
         let found = difference(xyz(*first), xyz(mean(last)));
         assert!(found < FILTERED_DE2000, "{found} {first:?}");
+    }
+}
+
+#[test]
+fn four_files_hold_the_matrices_of_blends_for_an_engine() {
+    // Single precision of numbers up to 4.
+    const ROUNDING: f64 = 1e-6;
+    let basis = ReducedBasis::try_new(cube().contract(), Grid::FIT).unwrap();
+    let engine = RgbSpace::named("rec709").unwrap();
+    let rgb_from_xyz = basis.rgb_from_xyz(&engine).unwrap();
+    let xyz_from_rgb = rgb_from_xyz.inverse().unwrap();
+    let model = ReducedModel::new(cube().model(), &basis);
+    let rgb = random_colors(400);
+    let desk = Desk::new();
+    for (column, &incident) in Incident::ALL.iter().enumerate() {
+        let form = Form::Matrix { engine: Some(engine.clone()), incident };
+        let path = desk.baked(form, Sample::Float, 20, &rgb);
+        let found = planes(&path, ["R", "G", "B", "U"]);
+        for (texel, rgb) in rgb.iter().enumerate() {
+            let color = LinearRgb(rgb.map(f64::from));
+            let mixture = cube().lookup(color, Interpolation::Blend).unwrap();
+            let expected = mixture.reduced_matrix(&model).in_rgb(rgb_from_xyz, xyz_from_rgb).0;
+            for (plane, row) in found.iter().zip(expected) {
+                let error = f64::from(plane[texel]) - row[column];
+                assert!(error.abs() < ROUNDING, "{incident:?} {rgb:?} {error}");
+            }
+        }
     }
 }
 

@@ -547,7 +547,12 @@ class Cube:
         return found.reshape(*shape, n, n)
 
     def reduced_matrix(
-        self, of: Of, *, outside: str = "raise", threads: Threads = None
+        self,
+        of: Of,
+        *,
+        engine: str | Sequence[float] | None = None,
+        outside: str = "raise",
+        threads: Threads = None,
     ) -> NDArray[Any]:
         """The 4×4 matrix by which a material acts on light given as X, Y, Z and ultraviolet.
 
@@ -558,9 +563,15 @@ class Cube:
 
         The first call prepares a table for RGB in single precision.
 
+        Parameters
+        ----------
+        engine
+            RGB space that an engine keeps light in, as `Contract` takes it. Light is then linear red, green
+            and blue, each 1 under the contract's light, and ultraviolet.
+
         Returns
         -------
-        array of shape (..., 4, 4), ``[..., outgoing, incident]``, each X, Y, Z, U
+        array of shape (..., 4, 4), ``[..., outgoing, incident]``, each X, Y, Z, U or R, G, B, U
 
         Examples
         --------
@@ -571,11 +582,16 @@ class Cube:
         [0.549, 0.5, 0.178, 0.083]
         """
         native, shape = subjects(of, outside, self._model_name())
-        found = self._reduced().matrix(self._native, native, threads)
-        return found.reshape(*shape, 4, 4)
+        found = self._reduced().matrix(self._native, native, threads).reshape(*shape, 4, 4)
+        if engine is None:
+            return found
+        rgb_from_xyz = self._engine(engine).astype(found.dtype)
+        return rgb_from_xyz @ found @ np.linalg.inv(rgb_from_xyz)
 
-    def reduced_light(self, light: Any = None) -> NDArray[np.float64]:
-        """X, Y, Z and U of a light; of the contract's by default.
+    def reduced_light(
+        self, light: Any = None, *, engine: str | Sequence[float] | None = None
+    ) -> NDArray[np.float64]:
+        """X, Y, Z and U of a light, or R, G, B and U in the RGB space of an engine; by default of the contract's light.
 
         Scaled so that a perfect diffuser has Y = 1; light too dark to see by, such as that of an
         ultraviolet lamp, to as much power as the contract's light has. D65 has U = 1.
@@ -584,7 +600,21 @@ class Cube:
         -------
         float64 array of shape (4,)
         """
-        return self._reduced().light(None if light is None else Illuminant(light)._native)
+        found = self._reduced().light(None if light is None else Illuminant(light)._native)
+        return found if engine is None else self._engine(engine) @ found
+
+    def _engine(self, space: str | Sequence[float]) -> NDArray[np.float64]:
+        """The matrix from X, Y, Z to linear RGB of an engine, which leaves U alone."""
+        own = self.contract
+        contract = Contract(
+            space=space,
+            illuminant=own.illuminant,
+            observer=own.observer,
+            adaptation=own.adaptation,
+        )
+        found = np.eye(4)
+        found[:3, :3] = contract.rgb_from_xyz
+        return found
 
     def without_ultraviolet(self, matrices: ArrayLike) -> NDArray[np.float64]:
         """3×3 matrices of X, Y, Z from 4×4 ones, for engines that have no fourth channel.

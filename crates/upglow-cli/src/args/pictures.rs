@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use upglow_color::{Adaptation, Grid, choices};
+use upglow_color::{Adaptation, Grid, RgbSpace, choices};
 use upglow_image::{Declared, DeclaredAlpha, Encoding, FORMATS, PngBits, Repair, Sample};
 use upglow_terminal::{Threads, word};
 
 use super::LightArgs;
-use super::values::{PictureSpace, bands, lights, picture_space, position, stops};
+use super::values::{PictureSpace, bands, lights, picture_space, position, rgb_space, stops};
 use crate::farm::TaskNumbers;
 use crate::pictures::Depth;
 
@@ -67,7 +67,8 @@ pub(crate) struct BakeArgs {
     #[arg(long)]
     pub(crate) update: bool,
     /// What to write: material stores the parameters of one material per texel; spectral stores
-    /// reflectance in bands and re-radiation between them; radiance stores the color under --light
+    /// reflectance in bands and re-radiation between them; radiance stores the color under --light; rgbu stores 4×4
+    /// matrices for engines without spectra, in four files: what becomes of red, green, blue and ultraviolet
     #[arg(long = "as", default_value_t = BakeForm::Material, value_name = "NAME", value_parser = word::<BakeForm>())]
     pub(crate) form: BakeForm,
     #[command(flatten)]
@@ -151,6 +152,9 @@ pub(crate) struct ResultArgs {
     /// name, or in the folder as materials.mtlx and materials.usda (spectral and radiance only)
     #[arg(long, conflicts_with_all = ["plan", "tasks"])]
     pub(crate) mtlx: bool,
+    /// RGB space that the engine keeps light in: a name or eight numbers (rgbu only) [default: that of the cube]
+    #[arg(long, value_name = "SPACE", value_parser = rgb_space)]
+    pub(crate) engine: Option<RgbSpace>,
     /// Number format of the channels: 16-bit half or 32-bit float (exr and tx only) [default: half]
     #[arg(long, value_name = "NAME", value_parser = word::<SampleName>())]
     pub(crate) sample: Option<SampleName>,
@@ -245,9 +249,17 @@ pub(crate) enum BakeForm {
     Material,
     Spectral,
     Radiance,
+    Rgbu,
 }
 
-choices!(BakeForm, "form", Material = "material", Spectral = "spectral", Radiance = "radiance",);
+choices!(
+    BakeForm,
+    "form",
+    Material = "material",
+    Spectral = "spectral",
+    Radiance = "radiance",
+    Rgbu = "rgbu",
+);
 
 /// Formats of baked files; the word is also their suffix.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

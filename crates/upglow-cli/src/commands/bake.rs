@@ -5,11 +5,11 @@ use std::time::Instant;
 
 use serde::Serialize;
 use upglow::Cube;
-use upglow_color::{Choice, Grid, Illuminant};
+use upglow_color::{Choice, Grid};
 use upglow_fit::KindCounts;
 use upglow_image::{
-    BakeError, BakeOptions, Baked, Baker, DeclaredAlpha, Form, Interpretation, Layout, Missing,
-    PictureError,
+    BakeError, BakeOptions, Baked, Baker, DeclaredAlpha, Form, Incident, Interpretation, Layout,
+    Missing, PictureError,
 };
 use upglow_terminal::{Console, Failure, Report};
 
@@ -53,12 +53,7 @@ pub(crate) fn run(args: &BakeArgs, console: &Console) -> Result<(), Failure> {
     }
     let recipe = Recipe::new(args)?;
     let inputs = pictures::find(&args.inputs, args.picture.depth())?;
-    let lights = recipe.lights();
-    let variants: Vec<String> = if lights.len() > 1 {
-        lights.iter().map(|light| in_file_name(light)).collect()
-    } else {
-        Vec::new()
-    };
+    let variants = recipe.variants();
     let outputs = Outputs {
         path: args.output(),
         form: args.form.name(),
@@ -99,7 +94,7 @@ pub(crate) fn run(args: &BakeArgs, console: &Console) -> Result<(), Failure> {
 #[derive(Debug)]
 pub(super) struct Recipe {
     format: BakeFormat,
-    /// One form, or one for each light.
+    /// One form, or one for each light, or for each number of light.
     forms: Vec<Form>,
     options: BakeOptions,
 }
@@ -116,8 +111,14 @@ impl Recipe {
         Ok(Self { format, forms: forms(args, format)?, options })
     }
 
-    fn lights(&self) -> Vec<&str> {
-        self.forms.iter().filter_map(Form::light).map(Illuminant::name).collect()
+    /// What tells the files of a picture apart in their names, if there are several.
+    fn variants(&self) -> Vec<String> {
+        let variant = |form: &Form| match form {
+            Form::Matrix { incident, .. } => incident.name().to_owned(),
+            form => form.light().map_or_else(String::new, |light| in_file_name(light.name())),
+        };
+        let forms = if self.forms.len() > 1 { &self.forms[..] } else { &[] };
+        forms.iter().map(variant).collect()
     }
 }
 
@@ -156,7 +157,6 @@ impl<'a> Work<'a> {
         console: &Console,
     ) -> Result<(), Failure> {
         let Self { args, recipe, .. } = self;
-        let lights = recipe.lights();
         for (i, (baker, output)) in self.bakers.iter().zip(outputs).enumerate() {
             if is_made(i) {
                 batch.add_unchanged(input);
@@ -180,7 +180,7 @@ impl<'a> Work<'a> {
                 input: input.display().to_string(),
                 file: output.display().to_string(),
                 form: args.form.name(),
-                light: lights.get(i).map(|&light| light.to_owned()),
+                light: recipe.forms[i].light().map(|light| light.name().to_owned()),
                 missing_ultraviolet: self.missing_ultraviolet[i].clone(),
                 width: baked.size[0],
                 height: baked.size[1],
@@ -227,12 +227,12 @@ fn format(args: &BakeArgs) -> BakeFormat {
     args.result.format.or_else(|| of_suffix().filter(fits)).unwrap_or(BakeFormat::Exr)
 }
 
-/// What is written for each picture: one form, or one for each light.
+/// What is written for each picture: one form, or one for each light, or for each number of light.
 fn forms(args: &BakeArgs, format: BakeFormat) -> Result<Vec<Form>, Failure> {
-    use BakeForm::{Material, Radiance, Spectral};
+    use BakeForm::{Material, Radiance, Rgbu, Spectral};
     let result = &args.result;
     let is_png = format == BakeFormat::Png;
-    let options: [(&str, bool, &[BakeForm]); 7] = [
+    let options: [(&str, bool, &[BakeForm]); 8] = [
         ("--fast", result.fast, &[Material]),
         ("--bands", result.bands.is_some(), &[Spectral]),
         ("--compact", result.compact, &[Spectral]),
@@ -240,6 +240,7 @@ fn forms(args: &BakeArgs, format: BakeFormat) -> Result<Vec<Form>, Failure> {
         ("--light-ends", result.light.ends.is_some(), &[Radiance]),
         ("--format png", is_png, &[Radiance]),
         ("--mtlx", result.mtlx, &[Spectral, Radiance]),
+        ("--engine", result.engine.is_some(), &[Rgbu]),
     ];
     plan::refuse_ignored("--as", args.form, &options)?;
     let options: [(&str, bool, &[BakeFormat]); 4] = [
@@ -273,6 +274,10 @@ fn forms(args: &BakeArgs, format: BakeFormat) -> Result<Vec<Form>, Failure> {
                 },
             };
             Ok(lights.into_iter().map(form).collect())
+        }
+        Rgbu => {
+            let form = |&incident| Form::Matrix { engine: result.engine.clone(), incident };
+            Ok(Incident::ALL.iter().map(form).collect())
         }
     }
 }

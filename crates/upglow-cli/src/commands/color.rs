@@ -12,6 +12,7 @@ use upglow_fit::{
 use upglow_terminal::{Console, Failure};
 
 use super::color_report::{ColorReport, LightReport, PartReport};
+use super::engine::EngineReport;
 use crate::args::{AnswerName, ColorArgs};
 use crate::metamers::{self, KnownColor, PaintReport, known_colors};
 use crate::output::warn_of_ultraviolet;
@@ -137,7 +138,12 @@ impl<'a> Shown<'a> {
         if let Some(path) = &args.plot {
             files::write(path, svg::draw(&self.figure()).as_bytes())?;
         }
-        console.print(&self.report(args))
+        let mut report = self.report(args);
+        if let Some(engine) = &args.engine {
+            let contract = self.cube.contract();
+            report.engine = Some(EngineReport::new(contract, self.mixture, engine, &self.lights)?);
+        }
+        console.print(&report)
     }
 
     fn de2000(&self, color: Xyz) -> f64 {
@@ -169,6 +175,7 @@ impl<'a> Shown<'a> {
             illuminant: illuminant.name(),
             adaptation: *adaptation,
             lights: self.lights(),
+            engine: None,
             plot: args.plot.as_ref().map(|path| path.display().to_string()),
             curves: &self.curves,
         }

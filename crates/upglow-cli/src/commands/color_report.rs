@@ -6,6 +6,7 @@ use upglow_color::{Adaptation, LinearRgb, Nearest, Standing, StandingKind, Xyz};
 use upglow_fit::{Appearance, CubeSummary, MaterialKind};
 use upglow_terminal::Report;
 
+use super::engine::EngineReport;
 use super::material_report::{ReflectanceReport, dye_names};
 use crate::metamers::{KnownReport, PaintReport};
 use crate::output::{Lines, Side, Table, triple};
@@ -34,6 +35,8 @@ pub(crate) struct ColorReport<'a> {
     pub(crate) illuminant: &'a str,
     pub(crate) adaptation: Adaptation,
     pub(crate) lights: Vec<LightReport>,
+    /// The material for an engine without spectra.
+    pub(crate) engine: Option<EngineReport>,
     pub(crate) plot: Option<String>,
     pub(crate) output: Option<String>,
     pub(crate) curves: &'a Curves,
@@ -187,7 +190,9 @@ impl From<Standing> for StandingReport {
 
 impl Report for ColorReport<'_> {
     fn text(&self) -> String {
-        [self.head(), self.shapes(), self.fluorescence(), self.colors()].join("\n")
+        let mut pieces = vec![self.head(), self.shapes(), self.fluorescence(), self.colors()];
+        pieces.extend(self.engine.as_ref().map(EngineReport::text));
+        pieces.join("\n")
     }
 }
 

@@ -102,8 +102,13 @@ fn shader(
     language: Language,
 ) -> Result<(Vec<u8>, Vec<String>), Failure> {
     let stem = args.output.file_stem().unwrap_or_default().to_string_lossy();
-    let shader = Shader::new(cube, language, &stem).map_err(|error| match error {
+    let shader = match &args.engine {
+        Some(engine) => Shader::of_matrices(cube, engine, language, &stem),
+        None => Shader::new(cube, language, &stem),
+    };
+    let shader = shader.map_err(|error| match error {
         ShaderError::Name { .. } => Failure::file(&args.output, error),
+        ShaderError::Engine(_) => Failure::option("--engine", error),
         error => Failure::file(&args.file, error),
     })?;
     let paths: Vec<PathBuf> =
@@ -191,6 +196,7 @@ fn kind(args: &ExportArgs) -> Result<ExportFormat, Failure> {
     let mtlx = &[ExportFormat::MaterialX][..];
     let luts = &[ExportFormat::Lut(LutFormat::Clf), ExportFormat::Lut(LutFormat::Cube)][..];
     let tables = &[coeff, luts].concat()[..];
+    let shaders = Language::ALL.map(ExportFormat::Shader);
     let options = [
         ("--resolution", args.resolution.is_some(), tables),
         ("--target", args.target.is_some(), luts),
@@ -198,6 +204,7 @@ fn kind(args: &ExportArgs) -> Result<ExportFormat, Failure> {
         ("--slope-max-per-nm", args.slope_max_per_nm.is_some(), coeff),
         ("--light", args.light.is_some(), mtlx),
         ("--light-ends", args.light_file.ends.is_some(), mtlx),
+        ("--engine", args.engine.is_some(), &shaders),
     ];
     refuse_ignored("--format", kind, &options)?;
     Ok(kind)

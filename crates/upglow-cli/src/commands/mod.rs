@@ -8,6 +8,7 @@ mod check;
 mod color;
 mod color_report;
 mod documents;
+mod engine;
 mod examples;
 #[cfg(feature = "explore")]
 mod explore;

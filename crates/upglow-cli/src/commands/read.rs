@@ -67,6 +67,10 @@ pub(crate) fn run(args: &ReadArgs, console: &Console) -> Result<(), Failure> {
             let message = "colors under a light, expected a file baked as material or spectral";
             Failure::file(&args.file, message)
         }
+        (FormError::NotSpectral, Some("rgbu")) => {
+            let message = "parts of 4×4 matrices, expected a file baked as material or spectral";
+            Failure::file(&args.file, message)
+        }
         _ => Failure::file(&args.file, error),
     })?;
     console.print(&found)

@@ -12,7 +12,7 @@ use crate::spectral::stated::stated;
 
 /// The header of the cube as JSON: contract, model, fit.
 pub(super) const HEADER: &str = "upglow.header";
-/// Name of the form: material, spectral or radiance.
+/// Name of the form: material, spectral, radiance or rgbu.
 pub(super) const FORM: &str = "upglow.form";
 /// What the channels hold, in words.
 pub(super) const CHANNELS: &str = "upglow.channels";

@@ -25,7 +25,12 @@ impl<'c> Blends<'c> {
 
     /// The kinds of the texels' blends under the cube's own light.
     pub(super) fn kinds(&self, rgb: &[[f32; 3]]) -> KindCounts {
-        let kind = |rgb: &[f32; 3]| self.kinds.of(LinearRgb(rgb.map(f64::from)));
-        rgb.iter().map(|rgb| kind(rgb).expect("texels outside were repaired or refused")).collect()
+        kinds(&self.kinds, rgb)
     }
+}
+
+/// The kinds of the texels' blends.
+pub(super) fn kinds(kinds: &BlendKinds<'_>, rgb: &[[f32; 3]]) -> KindCounts {
+    let kind = |rgb: &[f32; 3]| kinds.of(LinearRgb(rgb.map(f64::from)));
+    rgb.iter().map(|rgb| kind(rgb).expect("texels outside were repaired or refused")).collect()
 }

@@ -33,39 +33,48 @@ impl Engine {
         }
     }
 
-    /// ΔE00 between a sample under each light and what the engine makes of it. It knows the light by its
-    /// numbers.
-    pub(crate) fn differences(self, sample: &Sample, lights: &[Illuminant]) -> Vec<f64> {
-        let axes = Axes::of(sample);
-        let predict = self.prediction(&axes);
+    /// ΔE00 between the light that leaves the last of some samples, which reflect one after the other, and what the
+    /// engine makes of it, for each light. The engine knows light by its numbers.
+    pub(crate) fn differences(self, samples: &[&Sample], lights: &[Illuminant]) -> Vec<f64> {
+        let axes: Vec<Axes<'_>> = samples.iter().map(|sample| Axes::of(sample)).collect();
+        let predictions: Vec<_> = axes.iter().map(|axes| self.prediction(axes)).collect();
         let difference = |light| {
-            let sums = sample.sums(light);
-            let expected = sums.color(sample.matrix());
-            let found = predict(axes.light(sums.arriving()));
-            ciede2000(sums.lab_from_xyz(expected), sums.lab_from_xyz(found))
+            let sums = samples[0].sums(light);
+            let mut power = sums.arriving().to_vec();
+            let mut found = axes[0].light(&power);
+            let mut expected = Xyzu::default();
+            for (i, (axes, predict)) in axes.iter().zip(&predictions).enumerate() {
+                if i > 0 {
+                    power = axes.arriving(samples[i - 1].matrix().outgoing_nm(), &power);
+                }
+                power = axes.matrix.leaving(&power);
+                found = predict(found);
+                expected = axes.sum(axes.matrix.outgoing_nm(), &power);
+            }
+            ciede2000(sums.lab_from_xyz(expected.xyz()), sums.lab_from_xyz(found.xyz()))
         };
         lights.iter().map(difference).collect()
     }
 
-    fn prediction<'a>(self, axes: &'a Axes) -> Box<dyn Fn(Xyzu) -> Xyz + 'a> {
+    fn prediction<'a>(self, axes: &'a Axes) -> Box<dyn Fn(Xyzu) -> Xyzu + 'a> {
         let nm = axes.matrix.incident_nm();
         let parts = ReducedBasis::parts_of(nm, axes.own.arriving());
         match self {
             Self::Xyzu => {
                 let (reduction, answers) = axes.reduction(&parts);
                 let matrix = reduction.matrix(answers);
-                Box::new(move |light| (matrix * light).xyz())
+                Box::new(move |light| matrix * light)
             }
             Self::Xyz => {
                 let (reduction, answers) = axes.reduction(&parts);
                 let matrix = reduction.without_ultraviolet(reduction.matrix(answers));
-                Box::new(move |light| Xyz(matrix * light.xyz().0))
+                Box::new(move |light| without_ultraviolet(Xyz(matrix * light.xyz().0)))
             }
             Self::Sensors => {
                 let sensor = |k: usize| nm.iter().map(|nm| axes.sensors(*nm)[k]).collect();
                 let (reduction, answers) = axes.reduction(&[0, 1, 2, 3].map(sensor));
                 let matrix = reduction.unlimited(answers);
-                Box::new(move |light| (matrix * light).xyz())
+                Box::new(move |light| matrix * light)
             }
             Self::Rgb => {
                 let colorimetry = Contract::default().on(Grid::FIT);
@@ -75,11 +84,16 @@ impl Engine {
                 let colorimetry = Contract::default().on(Grid::FIT);
                 Box::new(move |light| {
                     let light = rgb(light.xyz());
-                    colorimetry.xyz_from_rgb(LinearRgb([0, 1, 2].map(|k| albedo[k] * light[k])))
+                    let leaves = LinearRgb([0, 1, 2].map(|k| albedo[k] * light[k]));
+                    without_ultraviolet(colorimetry.xyz_from_rgb(leaves))
                 })
             }
         }
     }
+}
+
+fn without_ultraviolet(Xyz([x, y, z]): Xyz) -> Xyzu {
+    Xyzu([x, y, z, 0.0])
 }
 
 /// Sums on the axes of a sample.
@@ -104,6 +118,13 @@ impl<'a> Axes<'a> {
         let seen = self.matrix.outgoing_nm().iter().position(|other| *other == nm);
         let [x, y, z] = seen.map_or([0.0; 3], |o| self.own.matching()[o]);
         [x, y, z, ReducedBasis::ultraviolet_at(nm) / self.ultraviolet_of_daylight]
+    }
+
+    /// Power in the incident bands, of power in the outgoing bands of another sample. What these do not have is dark.
+    fn arriving(&self, outgoing_nm: &[f64], power: &[f64]) -> Vec<f64> {
+        let of =
+            |nm: &f64| outgoing_nm.iter().position(|other| other == nm).map_or(0.0, |o| power[o]);
+        self.matrix.incident_nm().iter().map(of).collect()
     }
 
     /// The numbers of a light of this power.

@@ -23,6 +23,8 @@ pub(crate) struct ReducedReport {
     lights: Vec<String>,
     samples: Vec<String>,
     pub(crate) engines: Vec<EngineReport>,
+    /// The same of light that meets two surfaces, for each pair of samples.
+    pub(crate) twice: Vec<EngineReport>,
     cube: Option<CubeReport>,
 }
 
@@ -65,9 +67,12 @@ pub(super) fn run(args: &ReducedArgs, console: &Console) -> Result<(), Failure> 
 /// Every engine on every sample.
 pub(crate) fn measure(measured: &[Sample]) -> ReducedReport {
     let lights = lights();
-    let report = |engine: Engine| {
+    let once: Vec<Vec<&Sample>> = measured.iter().map(|sample| vec![sample]).collect();
+    let pair = |first| measured.iter().map(move |second| vec![first, second]);
+    let pairs: Vec<Vec<&Sample>> = measured.iter().flat_map(pair).collect();
+    let report = |engine: Engine, surfaces: &[Vec<&Sample>]| {
         let each: Vec<Vec<f64>> =
-            measured.iter().map(|sample| engine.differences(sample, &lights)).collect();
+            surfaces.iter().map(|samples| engine.differences(samples, &lights)).collect();
         let under: Vec<f64> =
             (0..lights.len()).map(|k| Spread::of(each.iter().map(|row| row[k])).mean).collect();
         let over = |holds: &dyn Fn(&Illuminant) -> bool| {
@@ -77,10 +82,15 @@ pub(crate) fn measure(measured: &[Sample]) -> ReducedReport {
         let (mean, smooth) = (over(&|_| true), over(&is_smooth));
         EngineReport { engine: engine.name(), under, mean, smooth }
     };
+    let of = |surfaces: &[Vec<&Sample>]| {
+        let engines = if measured.is_empty() { &[][..] } else { &Engine::ALL };
+        engines.iter().map(|engine| report(*engine, surfaces)).collect()
+    };
     ReducedReport {
         lights: lights.iter().map(|light| light.name().to_owned()).collect(),
         samples: measured.iter().map(|sample| sample.name.clone()).collect(),
-        engines: if measured.is_empty() { Vec::new() } else { Engine::ALL.map(report).into() },
+        engines: of(&once),
+        twice: of(&pairs),
         cube: None,
     }
 }
@@ -111,24 +121,27 @@ const VISIBLE_GAIN: f64 = 1e-6;
 impl Report for ReducedReport {
     fn text(&self) -> String {
         let mut text = String::new();
-        if !self.engines.is_empty() {
+        let tables =
+            [("means", &self.engines), ("means after two surfaces, all pairs", &self.twice)];
+        for (what, engines) in tables.into_iter().filter(|(_, engines)| !engines.is_empty()) {
             let (samples, lights) = (self.samples.join(", "), self.lights.join(" | "));
             let rule = " --- |".repeat(self.lights.len() + 3);
             write!(
                 text,
-                "ΔE00 from {samples}, means\n\n| engine | {lights} | smooth | all |\n|{rule}\n"
+                "ΔE00 from {samples}, {what}\n\n| engine | {lights} | smooth | all |\n|{rule}\n"
             )
             .expect(IN_MEMORY);
-        }
-        for EngineReport { engine, under, mean, smooth } in &self.engines {
-            let cells: Vec<String> =
-                under.iter().chain([smooth, mean]).map(|value| format!("{value:.2}")).collect();
-            writeln!(text, "| {engine} | {} |", cells.join(" | ")).expect(IN_MEMORY);
+            for EngineReport { engine, under, mean, smooth } in engines {
+                let cells: Vec<String> =
+                    under.iter().chain([smooth, mean]).map(|value| format!("{value:.2}")).collect();
+                writeln!(text, "| {engine} | {} |", cells.join(" | ")).expect(IN_MEMORY);
+            }
+            text.push('\n');
         }
         if let Some(CubeReport { resolution, limited, greatest_gain, darkened }) = &self.cube {
             writeln!(
                 text,
-                "\nOf the {resolution}³ nodes of the preset natural in ACEScg, {:.2} % would return some light stronger \
+                "Of the {resolution}³ nodes of the preset natural in ACEScg, {:.2} % would return some light stronger \
                  without a limit; the greatest gain is {greatest_gain:.3}. Under D65 itself {darkened} are stronger than the \
                  light.",
                 100.0 * limited
