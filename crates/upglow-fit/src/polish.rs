@@ -15,7 +15,7 @@ use crate::fitter::Fitter;
 use crate::options::{FitOptions, FitOptionsError};
 use crate::problem::parabola::UNIT_NM;
 use crate::problem::single_sums::SingleSums;
-use corner::{Corner, Corners};
+use corner::{Corners, Slot};
 use emission::Emission;
 use repeats::Repeats;
 use start::{Family, Glow};
@@ -55,7 +55,7 @@ use texel::Texel;
 pub struct Polisher<'c> {
     cube: &'c Cube,
     fitter: Fitter,
-    corners: Vec<Corner>,
+    corners: Vec<Slot>,
     /// Emission of each pair of dyes.
     emissions: Vec<Emission>,
     xyz_from_rgb: Matrix3,
@@ -92,7 +92,7 @@ impl<'c> Polisher<'c> {
         };
         let fitter = Fitter::new(cube.contract(), cube.model(), options)?;
         let model = fitter.model();
-        let corners = (0..cube.nodes().len()).map(|i| Corner::new(cube, i, model)).collect();
+        let corners = (0..cube.nodes().len()).map(|_| Slot::default()).collect();
         let emissions = match cube.model() {
             Model::Dyes(dyes) => {
                 (0..dyes.pairs()).map(|first| Emission::new(model, dyes, first)).collect()
@@ -175,7 +175,10 @@ impl<'c> Polisher<'c> {
                 Some(earlier) => out[earlier],
                 None => {
                     let rgb = LinearRgb(rgb[texel].map(f64::from));
-                    let corner = |(index, weight): (usize, f64)| (weight, &self.corners[index]);
+                    let model = self.fitter.model();
+                    let corner = |(index, weight): (usize, f64)| {
+                        (weight, self.corners[index].get(self.cube, index, model))
+                    };
                     let corners = self.cube.corners(rgb);
                     corners.map_or(NOWHERE, |corners| material(rgb, &corners.map(corner)))
                 }

@@ -1,14 +1,29 @@
 //! The nodes of a cube, prepared for polishing.
 
+use std::sync::OnceLock;
+
 use upglow::{Cube, Edge, Fluorescence, ModelOnGrid};
 use upglow_color::rounding::to_single;
 
 use crate::problem::parabola::{UNIT_NM, edge_of, scaled};
 use crate::problem::single_sums::CHART_NM;
 
-/// A node, prepared for polishing; one cache line.
+/// A node that is prepared when a texel needs it first: small pictures need few. One cache line.
+#[derive(Debug, Default)]
+#[repr(align(64))]
+pub(super) struct Slot(OnceLock<Corner>);
+
+impl Slot {
+    #[inline(always)]
+    pub(super) fn get(&self, cube: &Cube, index: usize, model: &ModelOnGrid) -> &Corner {
+        self.0.get_or_init(|| Corner::new(cube, index, model))
+    }
+}
+
+const _: () = assert!(size_of::<Slot>() == 64);
+
+/// A node, prepared for polishing.
 #[derive(Clone, Copy, Debug)]
-#[repr(C, align(64))]
 pub(super) struct Corner {
     /// The reflectance at the chart wavelengths.
     pub(super) values: [f32; 3],
@@ -29,7 +44,7 @@ pub(super) struct Corner {
 pub(super) type Corners<'a> = [(f64, &'a Corner); 4];
 
 impl Corner {
-    pub(super) fn new(cube: &Cube, index: usize, model: &ModelOnGrid) -> Self {
+    fn new(cube: &Cube, index: usize, model: &ModelOnGrid) -> Self {
         let node = &cube.nodes()[index];
         let material = cube.node_material(index);
         let edge = node.edge();
