@@ -61,3 +61,12 @@ def study_program(program: str) -> str:
     if not study.is_file():
         pytest.skip("no program `upglow-study` beside `upglow`")
     return str(study)
+
+
+@pytest.fixture(scope="session")
+def blender_python() -> str:
+    """A Python with Blender's package bpy, which needs another numpy than we do."""
+    path = os.environ.get("UPGLOW_BLENDER_PYTHON")
+    if path is None:
+        pytest.skip("UPGLOW_BLENDER_PYTHON names no Python with bpy")
+    return path
