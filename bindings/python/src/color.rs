@@ -1,16 +1,15 @@
 //! Colors of a cube's materials under a light, for arrays of RGB.
 
-use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyReadwriteArray2};
 use pyo3::prelude::*;
-use rayon::prelude::*;
 use upglow::ColorTable;
 use upglow_color::{Colorimetry, Contract, Grid, LinearRgb, Metric, Xyz, choices};
 
-use crate::arrays::{Number, fill, to_single, triples};
+use crate::arrays::{Number, fill, fill_batches, to_single, triples, values, zeros};
 use crate::cube::Cube;
 use crate::errors::value_error;
 use crate::illuminant::Illuminant;
-use crate::threads::{Threads, on_threads};
+use crate::threads::Threads;
 use crate::word::Word;
 
 /// The colors of a cube's materials under one light.
@@ -98,16 +97,12 @@ impl Colors {
         let found = self.each(py, rgb, threads, |_| ())?;
         let found = found.readonly();
         let found = triples(&found)?;
-        let mut out = vec![0.0; rgb.len()];
+        let mut out = values(0.0, rgb.len())?;
         let difference = |row: usize| {
             let target = self.colorimetry.xyz_from_rgb(LinearRgb(rgb[row].map(f64::from)));
             Metric::De2000.distance(&self.colorimetry, target, Xyz(found[row].map(f64::from)))
         };
-        py.detach(|| {
-            on_threads(threads, || {
-                fill(&mut out, 1, |row, out| out[0] = f32::from_double(difference(row)));
-            })
-        })?;
+        fill(py, threads, &mut out, 1, |row, out| out[0] = f32::from_double(difference(row)))?;
         Ok(PyArray1::from_vec(py, out))
     }
 }
@@ -123,21 +118,14 @@ impl Colors {
         threads: Threads,
         finish: impl Fn(&mut [[f32; 3]]) + Sync,
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        let array = PyArray2::zeros(py, [rgb.len(), 3], false);
-        let mut writable = array.readwrite();
+        let array = zeros(py, [rgb.len(), 3])?;
+        let mut writable: PyReadwriteArray2<'_, f32> = array.readwrite();
         let (out, _) = writable.as_slice_mut()?.as_chunks_mut::<3>();
-        let batch = |(rgb, out): (&[[f32; 3]], &mut [[f32; 3]])| {
-            self.table.xyz(rgb, out)?;
+        fill_batches(py, threads, out, BATCH, |batch, out| {
+            let rgb = &rgb[batch * BATCH..][..out.len()];
+            self.table.xyz(rgb, out).expect("as many results as colors");
             finish(out);
-            Ok(())
-        };
-        let done = py.detach(|| {
-            on_threads(threads, || match rgb.len() {
-                0..=BATCH => batch((rgb, out)),
-                _ => rgb.par_chunks(BATCH).zip(out.par_chunks_mut(BATCH)).try_for_each(batch),
-            })
         })?;
-        done.map_err(|error: upglow::LengthError| value_error(error))?;
         drop(writable);
         Ok(array)
     }

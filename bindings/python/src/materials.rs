@@ -2,15 +2,14 @@
 
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
-use rayon::prelude::*;
 use upglow::Node;
 use upglow_fit::Polisher;
 
-use crate::arrays::triples;
+use crate::arrays::{fill_batches, triples, values};
 use crate::cube::Cube;
 use crate::errors::value_error;
 use crate::nodes::{Arrays, arrays};
-use crate::threads::{Threads, on_threads};
+use crate::threads::Threads;
 
 /// Colors that a thread works on at a time.
 const BATCH: usize = 1024;
@@ -24,17 +23,13 @@ pub(crate) fn polish<'py>(
     threads: Threads,
 ) -> PyResult<Arrays<'py>> {
     let rgb = triples(&rgb)?;
-    let polished = py.detach(|| {
-        let polisher = Polisher::new(&cube.cube).map_err(value_error)?;
-        let mut texels = vec![Node::default(); rgb.len()];
-        on_threads(threads, || {
-            let batches = rgb.par_chunks(BATCH).zip(texels.par_chunks_mut(BATCH));
-            batches.try_for_each(|(rgb, texels)| polisher.polish(rgb, texels).map(|_| ()))
-        })?
-        .map_err(value_error)?;
-        PyResult::Ok(texels)
+    let polisher = py.detach(|| Polisher::new(&cube.cube)).map_err(value_error)?;
+    let mut texels = values(Node::default(), rgb.len())?;
+    fill_batches(py, threads, &mut texels, BATCH, |batch, texels| {
+        let rgb = &rgb[batch * BATCH..][..texels.len()];
+        polisher.polish(rgb, texels).expect("as many materials as colors");
     })?;
-    arrays(py, &polished)
+    arrays(py, &texels)
 }
 
 /// Indices of nodes and their weights, both `[color][corner]`.

@@ -1,17 +1,17 @@
 //! Materials as 4×4 matrices, and lights as four numbers.
 
-use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyReadwriteArray2};
 use pyo3::prelude::*;
 use upglow::{Mixture, ReducedModel, ReducedTable};
 use upglow_color::{Grid, ReducedBasis, ReducedMatrix};
 
-use crate::arrays::{Number, fill, triples};
+use crate::arrays::{Number, fill, triples, zeros};
 use crate::cube::Cube;
 use crate::errors::value_error;
 use crate::illuminant::Illuminant;
 use crate::nodes::nodes;
 use crate::rows::{Rows, Subjects, answers, doubles, stored};
-use crate::threads::{Threads, on_threads};
+use crate::threads::Threads;
 
 /// The lights by which a cube's materials are reduced, and what is made of them at the first call.
 #[pyclass(frozen, module = "upglow._upglow")]
@@ -89,13 +89,15 @@ impl Reduced {
         rgb: &[[f32; 3]],
         threads: Threads,
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        let mut out = vec![0.0; NUMBERS * rgb.len()];
+        let array = zeros(py, [rgb.len(), NUMBERS])?;
+        let mut writable: PyReadwriteArray2<'_, f32> = array.readwrite();
         let look_up = |row: usize, numbers: &mut [f32]| match self.table.matrix(rgb[row]) {
             Ok(matrix) => numbers.copy_from_slice(matrix.as_flattened()),
             Err(_) => numbers.fill(<f32 as Number>::NAN),
         };
-        py.detach(|| on_threads(threads, || fill(&mut out, NUMBERS, look_up)))?;
-        PyArray1::from_vec(py, out).reshape([rgb.len(), NUMBERS])
+        fill(py, threads, writable.as_slice_mut()?, NUMBERS, look_up)?;
+        drop(writable);
+        Ok(array)
     }
 
     fn each<'py, 'r>(

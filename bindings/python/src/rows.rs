@@ -8,8 +8,8 @@ use upglow::{
 use upglow_color::LinearRgb;
 use upglow_fit::{ColorError, Fitter};
 
-use crate::arrays::{Number, fill};
-use crate::threads::{Threads, on_threads};
+use crate::arrays::{Number, fill, zeros};
+use crate::threads::Threads;
 
 /// What is evaluated, one per row: colors to look up in one of two precisions, or stored materials.
 #[derive(FromPyObject)]
@@ -88,14 +88,14 @@ pub(crate) fn answers<'py, M: Bispectral<Real: Number>>(
     threads: Threads,
     answer: impl Fn(usize, &M, &mut [M::Real]) + Sync,
 ) -> PyResult<Bound<'py, PyArray2<M::Real>>> {
-    let array = PyArray2::zeros(py, [rows.count, width], false);
+    let array = zeros(py, [rows.count, width])?;
     let mut writable: PyReadwriteArray2<'_, M::Real> = array.readwrite();
     let out = writable.as_slice_mut()?;
     let answer = |row: usize, numbers: &mut [M::Real]| match (rows.material)(row) {
         Some(material) => answer(row, &material, numbers),
         None => numbers.fill(<M::Real>::NAN),
     };
-    py.detach(|| on_threads(threads, || fill(out, width, answer)))?;
+    fill(py, threads, out, width, answer)?;
     drop(writable);
     Ok(array)
 }

@@ -4,9 +4,9 @@ use numpy::{PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use upglow_color::LinearRgb;
 
-use crate::arrays::{fill, triples};
+use crate::arrays::{fill, triples, values};
 use crate::contract::Contract;
-use crate::threads::{Threads, on_threads};
+use crate::threads::Threads;
 
 /// Kind, distance in XYZ and ΔE00 of each color.
 type Standings<'py> =
@@ -23,16 +23,12 @@ pub(crate) fn standing<'py>(
     threads: Threads,
 ) -> PyResult<Standings<'py>> {
     let rgb = triples(&rgb)?;
-    let mut found = vec![(0, 0.0, 0.0); rgb.len()];
-    py.detach(|| {
-        let table = contract.standing_table();
-        on_threads(threads, || {
-            fill(&mut found, 1, |row, out| {
-                let standing = table.standing(LinearRgb(rgb[row]));
-                let beyond = standing.beyond();
-                out[0] = (standing.kind as u8, beyond.distance, beyond.de2000);
-            });
-        })
+    let mut found = values((0, 0.0, 0.0), rgb.len())?;
+    let table = py.detach(|| contract.standing_table());
+    fill(py, threads, &mut found, 1, |row, out| {
+        let standing = table.standing(LinearRgb(rgb[row]));
+        let beyond = standing.beyond();
+        out[0] = (standing.kind as u8, beyond.distance, beyond.de2000);
     })?;
     Ok((
         PyArray1::from_iter(py, found.iter().map(|f| f.0)),

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import signal
 import threading
-import time
 import warnings
 from typing import Any
 
@@ -106,23 +104,6 @@ def test_an_exception_in_progress_stops_the_build() -> None:
 
     with pytest.raises(RuntimeError, match="enough"):
         upglow.build(resolution=64, progress=tired)
-
-
-def test_ctrl_c_stops_the_build() -> None:
-    # A cube of 128³ takes minutes; the build checks every 64 nodes.
-    soon_s = 20.0
-    start = time.monotonic()
-    main = threading.main_thread().ident
-    timer = threading.Timer(0.5, lambda: signal.pthread_kill(main, signal.SIGINT))
-    # A program that is started in the background ignores the signal.
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    try:
-        timer.start()
-        with pytest.raises(KeyboardInterrupt):
-            upglow.build(resolution=128)
-    finally:
-        signal.signal(signal.SIGINT, before)
-    assert time.monotonic() - start < soon_s
 
 
 def test_a_fit_is_at_least_as_good_as_a_polished_material(cube: upglow.Cube) -> None:
