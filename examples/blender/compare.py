@@ -355,7 +355,12 @@ def main() -> None:
     mi.set_variant(options.variant)
     import upglow.mitsuba
 
-    cube = upglow.Cube.read(options.cube)
+    try:
+        cube = upglow.Cube.read(options.cube)
+    except (OSError, ValueError) as error:
+        sys.exit(f"compare.py: {error}")
+    if cube.contract.space != SPACE:
+        sys.exit(f"compare.py: {options.cube} is in {cube.contract.space}, expected {SPACE}")
     folder = options.out.resolve()
     folder.mkdir(parents=True, exist_ok=True)
     bake(cube, folder)

@@ -140,6 +140,8 @@ def material(picture: str, folder: Path) -> Any:
     normal, output = nodes.new("ShaderNodeNewGeometry"), nodes.new("ShaderNodeOutputAOV")
     output.aov_name = "normal"
     links.new(normal.outputs["Normal"], output.inputs["Color"])
+    normal.location, output.location = (-400, -1200), (0, -1200)
+    white.location, surface.location = (-400, 200), (0, 200)
     return made
 
 
@@ -159,10 +161,12 @@ def matrix_group() -> Any:
         *(light.outputs[name] for name in ("Red", "Green", "Blue")),
         ultraviolet.outputs["Red"],
     ]
+    inputs.location, outputs.location = (-800, 0), (800, 0)
+    light.location, ultraviolet.location = (-500, 200), (-500, 0)
     seen = None
-    for incident, amount in zip(INCIDENT, arriving, strict=True):
+    for column, (incident, amount) in enumerate(zip(INCIDENT, arriving, strict=True)):
         add = nodes.new("ShaderNodeVectorMath")
-        add.operation = "MULTIPLY_ADD"
+        add.operation, add.location = "MULTIPLY_ADD", (250 * column - 250, 0)
         links.new(inputs.outputs[incident], add.inputs[0])
         links.new(amount, add.inputs[1])
         if seen is not None:
@@ -192,11 +196,12 @@ def composite(scene: Any, folder: Path) -> None:
         file.file_output_items.new("RGBA", name)
         links.new(socket, file.inputs[name])
 
+    layer.location, file.location, shown.location = (-600, 0), (1000, -300), (1000, 0)
     total = None
-    for name in LAMPS:
+    for row, name in enumerate(LAMPS):
         light, ultraviolet = (layer.outputs[f"Combined_{twin}"] for twin in (name, f"{name}_u"))
         seen = nodes.new("CompositorNodeGroup")
-        seen.node_tree = group
+        seen.node_tree, seen.location = group, (-100, -300 * row)
         links.new(light, seen.inputs["light"])
         links.new(ultraviolet, seen.inputs["light's ultraviolet"])
         for incident in INCIDENT:
@@ -211,6 +216,7 @@ def composite(scene: Any, folder: Path) -> None:
             total = seen.outputs[0]
             continue
         add = nodes.new("ShaderNodeVectorMath")
+        add.location = (250 * row, 0)
         links.new(total, add.inputs[0])
         links.new(seen.outputs[0], add.inputs[1])
         total = add.outputs[0]
