@@ -117,7 +117,7 @@ def test_a_file_that_cannot_be_read_or_written_is_an_os_error(cube, tmp_path) ->
         cube.write(missing)
     with pytest.raises(IsADirectoryError):
         upglow.Cube.read(tmp_path)
-    with pytest.raises(ValueError, match=f"^{tmp_path}: not a file, expected a path to write"):
+    with pytest.raises(ValueError, match=f"^{tmp_path}: a folder, expected a file to write"):
         cube.write(tmp_path)
     assert list(tmp_path.iterdir()) == []
 

@@ -3,13 +3,14 @@
 use std::path::Path;
 
 use upglow::{Cube, CubeFileError};
-use upglow_image::Hash;
+use upglow_image::{Hash, WriteExrError};
 use upglow_terminal::Failure;
 
 use crate::pictures::RealPictures;
 
 pub(crate) use upglow_terminal::files::{
-    check_ending, check_output, make_folder, read_text, write,
+    aside, check_ending, check_has_place, check_output, make_folder, read_text, unwritten, write,
+    write_together,
 };
 
 /// The ending of cube files.
@@ -29,6 +30,19 @@ pub(crate) fn read_cube(path: &Path) -> Result<Cube, Failure> {
         CubeFileError::Content { cause, .. } => Failure::file(path, cause),
         error => Failure::file(path, error),
     })
+}
+
+/// Writes a cube.
+pub(crate) fn write_cube(path: &Path, cube: &Cube) -> Result<(), Failure> {
+    write(path, &cube.to_bytes())
+}
+
+/// The failure to write a picture.
+pub(crate) fn unwritten_exr(path: &Path, error: WriteExrError) -> Failure {
+    match error {
+        WriteExrError::Io(error) => unwritten(path, &error),
+        error => Failure::file(path, error),
+    }
 }
 
 /// The hash of a file.

@@ -6,11 +6,11 @@ use std::io::Write as _;
 use upglow::Cube;
 use upglow_color::MissingUltraviolet;
 use upglow_fit::{CubeSummary, KindCounts, MaterialKind};
-use upglow_terminal::size;
+use upglow_terminal::{say, size};
 
 /// Prints a warning on standard error.
 pub(crate) fn warn(message: impl Display) {
-    eprintln!("upglow: warning: {message}");
+    say(&format!("upglow: warning: {message}"));
 }
 
 /// Prints each warning about ultraviolet that a light lacks, and returns it for the report.
@@ -27,7 +27,7 @@ pub(crate) fn warn_of_own_light(cube: &Cube) -> Option<String> {
 
 /// Prints on standard error what is wrong with one picture of several.
 pub(crate) fn failed(line: &str) {
-    eprintln!("upglow: {}", line.replace(['\n', '\r'], " "));
+    say(&format!("upglow: {}", line.replace(['\n', '\r'], " ")));
 }
 
 /// Lines of names and values, with the values aligned.

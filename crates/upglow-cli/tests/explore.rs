@@ -11,7 +11,7 @@ use std::process::{Child, ChildStdout, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
-use support::{Folder, dye, program};
+use support::{Folder, dye, stoppable};
 use upglow_color::RgbSpace;
 use upglow_image::{ExrDescription, ExrWriter};
 
@@ -38,7 +38,7 @@ impl Explorer {
     fn start(folder: &Folder, words: &str) -> Self {
         let temporary = folder.path().join("temporary");
         std::fs::create_dir_all(&temporary).unwrap();
-        let mut child = Command::new(program())
+        let mut child = stoppable()
             .args(["explore", "--no-open"])
             .args(words.split_whitespace())
             .current_dir(folder.path())

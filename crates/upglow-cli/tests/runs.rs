@@ -29,11 +29,11 @@ fn the_same_seed_verifies_the_same_colors() {
 
 #[cfg(target_os = "linux")]
 mod stopped {
-    use std::process::{Command, Stdio};
+    use std::process::{Child, Command, Stdio};
     use std::time::{Duration, Instant};
 
     use super::Folder;
-    use super::support::{one_line, program};
+    use super::support::{one_line, program, stoppable};
 
     /// Far longer than the program takes to start or stop on a busy machine.
     const PATIENCE: Duration = Duration::from_secs(60);
@@ -46,6 +46,21 @@ mod stopped {
         mask >> (signal - 1) & 1 == 1
     }
 
+    fn wait_until_it_catches(child: &Child, signal: u32) {
+        let start = Instant::now();
+        while !catches(child.id(), signal) {
+            assert!(start.elapsed() < PATIENCE, "the program does not start");
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        std::thread::sleep(Duration::from_millis(100));
+    }
+
+    #[expect(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
+    fn send(child: &Child, name: &str) {
+        let sent = Command::new("kill").args([name, &child.id().to_string()]).status().unwrap();
+        assert!(sent.success());
+    }
+
     fn stop(words: &str, name: &str, signal: u32) {
         let folder = Folder::new();
         folder.done("build --resolution 2 -o old");
@@ -56,7 +71,7 @@ mod stopped {
     #[expect(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
     fn stop_in(folder: &Folder, words: &str, name: &str, signal: u32) {
         let names = folder.names();
-        let child = Command::new(program())
+        let child = stoppable()
             .args(words.split_whitespace())
             .current_dir(folder.path())
             .stdout(Stdio::piped())
@@ -64,13 +79,8 @@ mod stopped {
             .spawn()
             .unwrap();
         let start = Instant::now();
-        while !catches(child.id(), signal) {
-            assert!(start.elapsed() < PATIENCE, "the program does not start");
-            std::thread::sleep(Duration::from_millis(5));
-        }
-        std::thread::sleep(Duration::from_millis(100));
-        let sent = Command::new("kill").args([name, &child.id().to_string()]).status().unwrap();
-        assert!(sent.success());
+        wait_until_it_catches(&child, signal);
+        send(&child, name);
         let output = child.wait_with_output().unwrap();
         let stderr = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(130), "{stderr}");
@@ -84,6 +94,26 @@ mod stopped {
     fn a_build_leaves_no_file() {
         stop("build --resolution 128 -o cube", "-INT", 2);
         stop("build --resolution 128 -o cube", "-TERM", 15);
+    }
+
+    #[test]
+    fn signals_that_were_ignored_at_the_start_stay_ignored() {
+        let folder = Folder::new();
+        let child = Command::new("sh")
+            .args(["-c", "trap '' HUP INT; exec \"$0\" build --resolution 24 -o cube"])
+            .arg(program())
+            .current_dir(folder.path())
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        wait_until_it_catches(&child, 15);
+        assert!(!catches(child.id(), 1) && !catches(child.id(), 2));
+        send(&child, "-HUP");
+        send(&child, "-INT");
+        let output = child.wait_with_output().unwrap();
+        assert!(output.status.success(), "{:?}", String::from_utf8(output.stderr));
+        assert_eq!(folder.names(), ["cube"]);
     }
 
     #[test]

@@ -9,6 +9,8 @@ use std::process::ExitCode;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use upglow_fit::Stopped;
 
+use crate::output::say;
+
 /// Why a command failed. The line names the place of the fault, what was found and what was expected.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Failure {
@@ -18,7 +20,7 @@ pub enum Failure {
     Usage(String),
     /// The user stopped the work.
     Stopped,
-    /// The reader of standard output has closed it.
+    /// The reader of standard output, or of another pipe, has closed it.
     OutputClosed,
 }
 
@@ -72,7 +74,7 @@ impl Failure {
             Self::Stopped => STOPPED_STATUS,
             Self::OutputClosed => return ExitCode::SUCCESS,
         };
-        eprintln!("{program}: {self}");
+        say(&format!("{program}: {self}"));
         ExitCode::from(status)
     }
 }
@@ -83,7 +85,7 @@ impl fmt::Display for Failure {
         match self {
             Self::Input(line) | Self::Usage(line) => f.write_str(&one_line(line)),
             Self::Stopped => f.write_str("stopped, nothing was written"),
-            Self::OutputClosed => f.write_str("the reader of standard output has closed it"),
+            Self::OutputClosed => f.write_str("the reader of the output has closed it"),
         }
     }
 }

@@ -1,13 +1,13 @@
 //! Files that the programs read and write.
 
 use std::fs::File;
-use std::io::{ErrorKind, Read as _};
+use std::io::{self, ErrorKind, Read as _};
 use std::path::Path;
 
 use upglow::Aside;
 
 use crate::failure::Failure;
-use crate::output::size;
+use crate::output::{keep_for_data, size};
 
 /// The greatest text file that is read: a hundred times what a measured light takes, and a list of 100,000
 /// colors with as many digits as there are.
@@ -27,26 +27,36 @@ pub fn read_text(path: &Path, expected: &str) -> Result<String, Failure> {
 }
 
 /// Checks that a file can be written at `path`, before long work starts.
+///
+/// If it is standard output, reports then go to standard error.
 pub fn check_output(path: &Path) -> Result<(), Failure> {
-    let kind = match path.metadata() {
-        Ok(found) if found.is_file() => None,
-        Ok(found) if found.is_dir() => Some("a folder"),
-        Ok(_) => Some("a device, pipe or socket"),
-        Err(_) if path.file_name().is_none() => Some("no file name"),
-        Err(_) => None,
-    };
-    if let Some(kind) = kind {
-        return Err(Failure::file(path, format!("{kind}, expected a file to write")));
-    }
     let folder = folder_of(path);
     if !folder.is_dir() {
         let message = format!("no folder {}, expected an existing one", folder.display());
         return Err(Failure::file(path, message));
     }
-    Aside::create(path).map(drop).map_err(|error| {
-        let expected = format!("a folder to write in, other than {}", folder.display());
-        Failure::system(path, &error, expected)
-    })
+    let aside = Aside::create(path).map_err(|error| match error.kind() {
+        ErrorKind::InvalidInput => Failure::file(path, error),
+        _ => {
+            let expected = format!("a folder to write in, other than {}", folder.display());
+            Failure::system(path, &error, expected)
+        }
+    })?;
+    if aside.is_standard_output() {
+        keep_for_data();
+    }
+    Ok(())
+}
+
+/// Checks that files can be written beside an output: that it is none of a device or pipe.
+pub fn check_has_place(path: &Path) -> Result<(), Failure> {
+    match path.metadata() {
+        Ok(found) if !found.is_file() => {
+            let message = "a device or pipe, expected a file, beside which others are written";
+            Err(Failure::file(path, message))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Checks that the name of an output does not promise another kind of file: it ends in one of
@@ -66,13 +76,26 @@ pub fn check_ending(path: &Path, endings: &[&str]) -> Result<(), Failure> {
 
 /// Writes a file, as a whole or not at all.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    Aside::write_whole(path, bytes).map_err(|error| match error.kind() {
-        ErrorKind::InvalidInput => Failure::file(path, error),
-        _ => {
-            let room = size(bytes.len() as u64);
-            Failure::system(path, &error, format!("room for {room} and the right to write"))
-        }
-    })
+    Aside::write_whole(path, bytes).map_err(|error| unwritten(path, &error))
+}
+
+/// Starts a file that [`write_together`] completes.
+pub fn aside(path: &Path, bytes: &[u8]) -> Result<Aside, Failure> {
+    Aside::with_content(path, bytes).map_err(|error| unwritten(path, &error))
+}
+
+/// Gives files that belong together their names, in this order; the last is `path`, which refers to the others.
+pub fn write_together(path: &Path, files: Vec<Aside>) -> Result<(), Failure> {
+    Aside::commit_together(files).map_err(|error| unwritten(path, &error))
+}
+
+/// The failure to write a file.
+pub fn unwritten(path: &Path, error: &io::Error) -> Failure {
+    match error.kind() {
+        ErrorKind::InvalidInput => Failure::file(path, error.to_string()),
+        ErrorKind::BrokenPipe => Failure::OutputClosed,
+        _ => Failure::system(path, error, "room for the file and the right to write"),
+    }
 }
 
 /// Creates a folder, and missing ones above it.

@@ -15,7 +15,7 @@ use std::process::ExitCode;
 use clap::Parser;
 
 pub use failure::Failure;
-pub use output::{Console, Report, size};
+pub use output::{Console, Report, say, size};
 pub use progress::{Bar, Threads, catch_stops, check_stopped};
 pub use values::{count, in_range, number, parsed, word};
 

@@ -3,6 +3,7 @@
 use std::cell::Cell;
 use std::io::{self, Write as _};
 use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde::Serialize;
 
@@ -41,13 +42,33 @@ impl Console {
             let blank = if self.printed.replace(true) { "\n" } else { "" };
             Ok(blank.to_owned() + &report.text())
         };
-        let mut stdout = io::stdout().lock();
-        let printed = text.and_then(|text| stdout.write_all(text.as_bytes()));
-        printed.and_then(|()| stdout.flush()).map_err(|error| match error.kind() {
+        let printed = text.and_then(|text| {
+            if IS_FOR_DATA.load(Ordering::Relaxed) {
+                say(text.trim_end_matches('\n'));
+                return Ok(());
+            }
+            let mut stdout = io::stdout().lock();
+            stdout.write_all(text.as_bytes())?;
+            stdout.flush()
+        });
+        printed.map_err(|error| match error.kind() {
             io::ErrorKind::BrokenPipe => Failure::OutputClosed,
             _ => Failure::system(Path::new("standard output"), &error, "room"),
         })
     }
+}
+
+/// Whether a file is written to standard output.
+static IS_FOR_DATA: AtomicBool = AtomicBool::new(false);
+
+/// Lets reports go to standard error, because a file is written to standard output.
+pub(crate) fn keep_for_data() {
+    IS_FOR_DATA.store(true, Ordering::Relaxed);
+}
+
+/// Prints a line on standard error. If nobody can read it there, the work goes on.
+pub fn say(line: &str) {
+    let _ = io::stderr().write_all(format!("{line}\n").as_bytes());
 }
 
 /// A number of bytes with a unit: 1.23 MB.

@@ -1,7 +1,7 @@
 //! Work on several threads, with progress on standard error and a handler of Ctrl-C.
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, LazyLock, Mutex, Once, PoisonError};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use upglow_fit::{Progress, Watch};
@@ -14,7 +14,7 @@ use crate::values::in_range;
 const REDRAWS_PER_S: u8 = 10;
 
 /// Whether the user has pressed Ctrl-C, or the system has asked the program to terminate.
-static STOPPED: AtomicBool = AtomicBool::new(false);
+static STOPPED: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
 
 /// More threads than this are probably a typing error, and would exhaust the memory.
 const MOST_THREADS: usize = 1024;
@@ -79,11 +79,30 @@ fn style() -> ProgressStyle {
         .unwrap_or_else(|_| ProgressStyle::default_bar())
 }
 
-/// Lets [`check_stopped`] know of Ctrl-C and termination, which then no longer end the program.
+/// Lets [`check_stopped`] know of Ctrl-C, termination and the end of the terminal, which then no longer end the
+/// program. What the program was started to ignore, as by `nohup`, it ignores.
 pub fn catch_stops() {
-    // Setting the handler fails for every call but the first. Without a handler Ctrl-C ends the
-    // program at once, which leaves no unfinished file either.
-    let _ = ctrlc::set_handler(|| STOPPED.store(true, Ordering::Relaxed));
+    use signal_hook::consts::{SIGINT, SIGTERM};
+    #[cfg(unix)]
+    let signals = [SIGINT, SIGTERM, signal_hook::consts::SIGHUP];
+    #[cfg(not(unix))]
+    let signals = [SIGINT, SIGTERM];
+    static CAUGHT: Once = Once::new();
+    CAUGHT.call_once(|| {
+        for signal in signals.into_iter().filter(|&signal| !is_ignored(signal)) {
+            // Without a handler the signal ends the program at once, which leaves no unfinished file either that
+            // the next run would not remove.
+            let _ = signal_hook::flag::register(signal, STOPPED.clone());
+        }
+    });
+}
+
+/// Whether the program was started to ignore a signal; `false` on systems that do not tell.
+fn is_ignored(signal: i32) -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0);
+    mask >> (signal - 1) & 1 == 1
 }
 
 /// Returns an error after Ctrl-C.

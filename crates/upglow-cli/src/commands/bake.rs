@@ -331,7 +331,7 @@ fn refused(error: BakeError, cube: &Path) -> Failure {
 fn failure(error: BakeError, input: &Path, output: &Path) -> Failure {
     match error {
         BakeError::Stopped(_) => Failure::Stopped,
-        BakeError::Write(error) => Failure::file(output, error),
+        BakeError::Write(error) => files::unwritten_exr(output, error),
         BakeError::Picture(error) => picture_failure(error, input),
         BakeError::Texel { .. } => {
             Failure::file(input, error).with("; give --repair clip, scale or nearest")

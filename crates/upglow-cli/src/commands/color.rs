@@ -74,7 +74,7 @@ fn run_search(
             _ => &material,
         };
         let cube = single.to_cube(contract, MetamerSearch::METHOD).map_err(no_material)?;
-        cube.write(path).map_err(|error| Failure::file(path, error))?;
+        files::write_cube(path, &cube)?;
     }
     let seen = |under: &Colorimetry| mixture.color(&ModelOnGrid::new(mixture.model(), under));
     let missing = |light: &Illuminant| {

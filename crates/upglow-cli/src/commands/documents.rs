@@ -71,9 +71,10 @@ impl MapDocuments {
 
     /// Writes the documents, and returns their names.
     pub(super) fn write(&self, documents: &Documents) -> Result<Vec<String>, Failure> {
-        for (path, text) in self.paths.iter().zip([&documents.materialx, &documents.usd]) {
-            files::write(path, text.as_bytes())?;
-        }
+        let texts = [&documents.materialx, &documents.usd];
+        let files = self.paths.iter().zip(texts);
+        let files = files.map(|(path, text)| files::aside(path, text.as_bytes()));
+        files::write_together(&self.paths[0], files.collect::<Result<_, _>>()?)?;
         Ok(self.paths.iter().map(|path| path.display().to_string()).collect())
     }
 }

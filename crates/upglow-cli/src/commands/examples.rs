@@ -29,7 +29,7 @@ pub(crate) fn run(args: &ExamplesArgs, console: &Console) -> Result<(), Failure>
     let mut pictures = Vec::new();
     for picture in ExamplePicture::ALL {
         let path = args.out.join(format!("{}.exr", picture.name));
-        write(&path, &picture).map_err(|error| Failure::file(&path, error))?;
+        write(&path, &picture).map_err(|error| files::unwritten_exr(&path, error))?;
         let [width, height] = picture.size;
         let file = path.display().to_string();
         pictures.push(PictureReport { file, width, height, about: picture.about });

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
-use upglow::{Cube, Model, Node, Sigmoid, Vertex};
+use upglow::{Aside, Cube, Model, Node, Sigmoid, Vertex};
 use upglow_color::{Choice, Illuminant, RgbSpace};
 use upglow_explorer::offline_page;
 use upglow_fit::{BuildError, MaterialSet, Preset, Relighting, fit_coefficients};
@@ -58,24 +58,27 @@ pub(crate) fn run(args: &ExportArgs, console: &Console) -> Result<(), Failure> {
         Some(light) => warn_of_ultraviolet(cube.model().missing_ultraviolet(light)),
         None => has_dyes.then(|| warn_of_own_light(&cube)).flatten(),
     };
-    let mut textures = Vec::new();
+    // What the output refers to, and which appears with it.
+    let mut beside = Beside::default();
     let (bytes, nodes) = match kind {
         ExportFormat::Csv => (csv(&cube).into_bytes(), cube.nodes().len()),
         ExportFormat::Coeff => coeff(args, &cube, console)?,
         ExportFormat::Html => (page(args, &cube)?, cube.nodes().len()),
         ExportFormat::MaterialX => {
-            let (document, written) = material(args, &cube, light, console)?;
-            textures = written;
+            let document;
+            (document, beside) = material(args, &cube, light, console)?;
             (document, cube.nodes().len())
         }
         ExportFormat::Lut(format) => luts::lut(args, &cube, format, console)?,
         ExportFormat::Shader(language) => {
-            let (source, written) = shader(args, &cube, language)?;
-            textures = written;
+            let source;
+            (source, beside) = shader(args, &cube, language)?;
             (source, cube.nodes().len())
         }
     };
-    files::write(&args.output, &bytes)?;
+    let Beside { mut files, names: textures } = beside;
+    files.push(files::aside(&args.output, &bytes)?);
+    files::write_together(&args.output, files)?;
     console.print(&ExportReport {
         file: args.output.display().to_string(),
         format: kind.name(),
@@ -94,13 +97,27 @@ fn page(args: &ExportArgs, cube: &Cube) -> Result<Vec<u8>, Failure> {
     Ok(page.into_bytes())
 }
 
-/// Writes the textures of a shader, and returns its source and their names. The source is written
-/// last, so that it never exists without its textures.
+/// Files that appear with the output and just before it, so that it never exists without them.
+#[derive(Debug, Default)]
+struct Beside {
+    files: Vec<Aside>,
+    names: Vec<String>,
+}
+
+impl Beside {
+    /// Adds a file that only lacks its name.
+    fn add(&mut self, path: &Path, file: Aside) {
+        self.files.push(file);
+        self.names.push(path.display().to_string());
+    }
+}
+
+/// The source of a shader, and its textures.
 fn shader(
     args: &ExportArgs,
     cube: &Cube,
     language: Language,
-) -> Result<(Vec<u8>, Vec<String>), Failure> {
+) -> Result<(Vec<u8>, Beside), Failure> {
     let stem = args.output.file_stem().unwrap_or_default().to_string_lossy();
     let shader = match &args.engine {
         Some(engine) => Shader::of_matrices(cube, engine, language, &stem),
@@ -114,31 +131,28 @@ fn shader(
     let paths: Vec<PathBuf> =
         shader.payload.iter().map(|file| args.output.with_file_name(&file.name)).collect();
     check_beside(args, &paths)?;
+    let mut beside = Beside::default();
     for (path, file) in paths.iter().zip(&shader.payload) {
-        files::write(path, &file.bytes)?;
+        beside.add(path, files::aside(path, &file.bytes)?);
     }
-    Ok((shader.source.into_bytes(), displayed(&paths)))
-}
-
-fn displayed(paths: &[PathBuf]) -> Vec<String> {
-    paths.iter().map(|path| path.display().to_string()).collect()
+    Ok((shader.source.into_bytes(), beside))
 }
 
 /// Checks files that are written beside the output.
 fn check_beside(args: &ExportArgs, paths: &[PathBuf]) -> Result<(), Failure> {
+    files::check_has_place(&args.output)?;
     let check =
         |path: &PathBuf| files::check_output_of(path, Some(&args.file), &RealPictures::default());
     paths.iter().try_for_each(check)
 }
 
-/// Writes what a MaterialX document refers to, and the same material for USD; returns the document and the
-/// names of these files. The documents are written last.
+/// A MaterialX document, what it refers to, and the same material for USD.
 fn material(
     args: &ExportArgs,
     cube: &Cube,
     light: Option<Illuminant>,
     console: &Console,
-) -> Result<(Vec<u8>, Vec<String>), Failure> {
+) -> Result<(Vec<u8>, Beside), Failure> {
     let light = light.unwrap_or_else(|| cube.contract().illuminant.clone());
     let colors = console.work(args.threads, |_| {
         let nodes = Relighting::of_nodes(cube);
@@ -159,16 +173,17 @@ fn material(
     let stage = args.output.with_extension("usda");
     let paths = [name, node[0].0.clone(), node[1].0.clone(), stage];
     check_beside(args, &paths)?;
-    write_colors(&paths[0], &texture, &cube.contract().space)?;
+    let mut beside = Beside::default();
+    beside.add(&paths[0], colors_aside(&paths[0], &texture, &cube.contract().space)?);
     for (path, bytes) in &node {
-        files::write(path, bytes)?;
+        beside.add(path, files::aside(path, bytes)?);
     }
-    files::write(&paths[3], documents.usd.as_bytes())?;
-    Ok((documents.materialx.into_bytes(), displayed(&paths)))
+    beside.add(&paths[3], files::aside(&paths[3], documents.usd.as_bytes())?);
+    Ok((documents.materialx.into_bytes(), beside))
 }
 
-/// Writes the colors of nodes as a picture in single precision.
-fn write_colors(path: &Path, texture: &ColorTexture, space: &RgbSpace) -> Result<(), Failure> {
+/// The colors of nodes as a picture in single precision, which only lacks its name.
+fn colors_aside(path: &Path, texture: &ColorTexture, space: &RgbSpace) -> Result<Aside, Failure> {
     let description = ExrDescription::new(texture.size, ["R", "G", "B"])
         .with_sample(Sample::Float)
         .with_named_space(space);
@@ -176,9 +191,9 @@ fn write_colors(path: &Path, texture: &ColorTexture, space: &RgbSpace) -> Result
         let mut writer = ExrWriter::create(path, description)?;
         let planes = texture.planes.each_ref().map(Vec::as_slice);
         writer.write_band(&planes)?;
-        writer.finish()
+        writer.into_file()
     };
-    write().map(drop).map_err(|error| Failure::file(path, error))
+    write().map_err(|error| files::unwritten_exr(path, error))
 }
 
 /// The format given by the option or by the suffix of the output.

@@ -65,7 +65,7 @@ pub(crate) fn run(args: &FitMatrixArgs, console: &Console) -> Result<(), Failure
         .map_err(|error| Failure::file(&args.file, error))?;
     if let Some(path) = &args.output {
         let cube = fit.to_cube().map_err(|error| Failure::file(&args.file, error))?;
-        cube.write(path).map_err(|error| Failure::file(path, error))?;
+        files::write_cube(path, &cube)?;
     }
     let report = MatrixReport::new(args, &measured, &fit, &lights, differences);
     if let Some(path) = &args.plot {

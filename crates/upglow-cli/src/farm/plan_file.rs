@@ -13,6 +13,8 @@ use upglow::Aside;
 use upglow_image::Hash;
 use upglow_terminal::Failure;
 
+use crate::files::unwritten;
+
 /// Changes with the meaning of the file.
 const VERSION: u32 = 1;
 /// The version of this program: other versions may make other files.
@@ -106,10 +108,6 @@ impl PlanWriter {
     fn write(&mut self, text: &str) -> Result<(), Failure> {
         self.file.write_all(text.as_bytes()).map_err(|error| unwritten(&self.path, &error))
     }
-}
-
-fn unwritten(path: &Path, error: &io::Error) -> Failure {
-    Failure::system(path, error, "room for some hundred bytes a picture and the right to write")
 }
 
 /// A plan whose tasks are read one by one.

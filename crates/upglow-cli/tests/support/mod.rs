@@ -23,6 +23,13 @@ pub(crate) fn program() -> PathBuf {
     assert_cmd::cargo::cargo_bin!("upglow").into()
 }
 
+/// The program, which signals stop even where these tests were started to ignore them, as under `nohup`.
+pub(crate) fn stoppable() -> std::process::Command {
+    let mut command = std::process::Command::new("env");
+    command.arg("--default-signal=INT,TERM,HUP").arg(program());
+    command
+}
+
 impl Folder {
     pub(crate) fn new() -> Self {
         Self(tempfile::tempdir().unwrap())

@@ -211,12 +211,17 @@ impl BlockFile {
     }
 
     /// Writes the table and gives the file its name. Returns its size in bytes.
-    pub(super) fn finish(mut self) -> Result<u64, WriteExrError> {
+    pub(super) fn finish(self) -> Result<u64, WriteExrError> {
+        Ok(self.into_file()?.commit()?)
+    }
+
+    /// Writes the table; the file only lacks its name.
+    fn into_file(mut self) -> Result<Aside, WriteExrError> {
         debug_assert!(self.offsets.iter().all(|&at| at > 0), "a block is missing");
         self.file.seek(SeekFrom::Start(self.table))?;
         let table: Vec<u8> = self.offsets.iter().flat_map(|at| at.to_le_bytes()).collect();
         self.file.write_all(&table)?;
-        Ok(self.file.commit()?)
+        Ok(self.file)
     }
 }
 
@@ -262,11 +267,20 @@ impl ExrWriter {
     ///
     /// [`WriteExrError`] if rows are missing or the disk is full; no file is left then.
     pub fn finish(self) -> Result<u64, WriteExrError> {
+        Ok(self.into_file()?.commit()?)
+    }
+
+    /// Completes the file but for its name, for files that appear together.
+    ///
+    /// # Errors
+    ///
+    /// As [`ExrWriter::finish`].
+    pub fn into_file(self) -> Result<Aside, WriteExrError> {
         let expected = self.file.description.size[1];
         if self.rows != expected {
             return Err(WriteExrError::invalid(format!("{} rows", self.rows), expected));
         }
-        self.file.finish()
+        self.file.into_file()
     }
 
     /// The number of rows of a valid band.

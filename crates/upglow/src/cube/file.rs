@@ -555,7 +555,7 @@ mod tests {
     fn a_cube_is_not_written_over_a_folder() {
         let folder = tempfile::tempdir().unwrap();
         let error = cube().write(folder.path()).unwrap_err().to_string();
-        let expected = "not a file, expected a path to write a file at";
+        let expected = "a folder, expected a file to write";
         assert_eq!(error, format!("{}: {expected}", folder.path().display()));
     }
 }
