@@ -135,6 +135,31 @@ def test_a_picture_that_is_encoded_for_a_screen_is_refused_with_its_conversion(
     assert "UpglowBSDF" in str(mi.load_dict(made))
 
 
+def test_a_picture_whose_numbers_the_renderer_converts_is_refused(
+    path, tmp_path, monkeypatch
+) -> None:
+    oiio = pytest.importorskip("OpenImageIO", reason="needs the package OpenImageIO")
+    monkeypatch.chdir(tmp_path)
+    rec709 = (0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329)
+    acescg = (0.713, 0.293, 0.165, 0.83, 0.128, 0.044, 0.32168, 0.33767)
+    texels = np.full((2, 2, 3), 0.5, np.float32)
+    for name, chromaticities in [("own.exr", None), ("same.exr", rec709), ("other.exr", acescg)]:
+        described = oiio.ImageSpec(2, 2, 3, oiio.HALF)
+        if chromaticities:
+            kind = oiio.TypeDesc("float[8]")
+            described.attribute("chromaticities", kind, chromaticities)
+        output = oiio.ImageOutput.create(name)
+        output.open(name, described)
+        output.write_image(texels)
+        output.close()
+    made = {"type": "upglow", "cube": path}
+    for name in ["own.exr", "same.exr"]:
+        assert "UpglowBSDF" in str(mi.load_dict({**made, "color": picture(name)}))
+    told = message({**made, "color": picture("other.exr")})
+    assert "color is other.exr, whose attribute chromaticities makes the renderer convert" in told
+    assert "upglow bake CUBE other.exr --output other.baked.exr --as radiance" in told
+
+
 def picture(file) -> dict:
     return {"type": "bitmap", "raw": True, "filename": str(file)}
 

@@ -39,7 +39,7 @@ pub(crate) fn run(args: &ExamplesArgs, console: &Console) -> Result<(), Failure>
 
 fn write(path: &Path, picture: &ExamplePicture) -> Result<(), WriteExrError> {
     let description =
-        ExrDescription::new(picture.size, ["R", "G", "B"]).with_space(&RgbSpace::default());
+        ExrDescription::new(picture.size, ["R", "G", "B"]).with_named_space(&RgbSpace::default());
     let mut writer = ExrWriter::create(path, description)?;
     for y in 0..picture.size[1] {
         let row = picture.row(y);

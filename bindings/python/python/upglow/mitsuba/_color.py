@@ -16,6 +16,15 @@ from ._host import dr, is_scalar, mi
 _ENCODED = (".png", ".jpg", ".jpeg", ".bmp", ".tga")
 """Suffixes of pictures whose numbers are encoded for a screen; with `raw` they are not decoded."""
 
+_EXR = b"\x76\x2f\x31\x01"
+_CHROMATICITIES = b"\0chromaticities\0chromaticities\0"
+"""The end of the attribute before, and the name and type of the one that is searched for; four bytes of size follow."""
+
+_REC709 = [0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329]
+
+_HEADER = 1 << 16
+"""Bytes of a file in which its attributes are searched for."""
+
 _BEYOND = 0.05
 """How far a texel may be outside 0 to 1, where it is clamped. Half precision, filters that sharpen and
 colors that no material shows leave a few percent: a smaller number would refuse such pictures, a
@@ -102,7 +111,8 @@ def _found(kind: str, value: Any, cube: Cube) -> str | None:
     except RuntimeError:
         return _without_colors(value)
     grids = (np.asarray(grid) for key, grid in mi.traverse(value).items() if key.endswith("data"))
-    return _encoded(value, cube) or next(filter(None, map(_problem, grids)), None)
+    told = _encoded(value, cube) or _converted(value, cube)
+    return told or next(filter(None, map(_problem, grids)), None)
 
 
 def _without_colors(texture: Any) -> str:
@@ -135,11 +145,35 @@ def _encoded(texture: Any, cube: Cube) -> str | None:
     name = _name(texture)
     if not name.lower().endswith(_ENCODED):
         return None
-    output = PurePath(name).with_suffix(".exr")
+    return f"{name}, a picture encoded for a screen ({_conversion(name, cube)})"
+
+
+def _converted(value: Any, cube: Cube) -> str | None:
+    """Whether the renderer has converted the numbers of a file: it does so, also with `raw`, if an OpenEXR file states
+    chromaticities. Only the last part of its name is known, so that a file in another folder is not seen."""
+    name = _name(value)
+    try:
+        with open(str(mi.file_resolver().resolve(name)), "rb") as file:
+            header = file.read(_HEADER)
+    except OSError:
+        return None
+    at = header.find(_CHROMATICITIES)
+    if not header.startswith(_EXR) or at < 0:
+        return None
+    stated = np.frombuffer(header, "<f4", 8, at + len(_CHROMATICITIES) + 4)
+    if np.allclose(stated, _REC709, atol=1e-3):
+        return None
     return (
-        f"{name}, a picture encoded for a screen (upglow bake CUBE {name} --output {output} "
-        f"--as radiance --light {cube.contract.illuminant.name} converts it)"
+        f"{name}, whose attribute chromaticities makes the renderer convert it to Rec.709 "
+        f"({_conversion(name, cube)} to the space of the cube, without that attribute)"
     )
+
+
+def _conversion(name: str, cube: Cube) -> str:
+    is_exr = name.lower().endswith(".exr")
+    output = PurePath(name).with_suffix(".baked.exr" if is_exr else ".exr")
+    light = cube.contract.illuminant.name
+    return f"upglow bake CUBE {name} --output {output} --as radiance --light {light} converts it"
 
 
 def _problem(texels: NDArray[Any]) -> str | None:
