@@ -7,6 +7,7 @@ use crate::step::{Step, StepError, target_dir};
 mod agreement;
 mod header;
 mod install;
+mod isolated;
 mod programs;
 
 pub(crate) use header::write as write_header;

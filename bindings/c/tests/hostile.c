@@ -376,6 +376,11 @@ static void threads(const UpglowCube *cube, const UpglowMaterial *material) {
     }
 }
 
+#ifdef __linux__
+/* A symbol of every static library in Rust: a program may link another one. */
+void rust_eh_personality(void) {}
+#endif
+
 int main(int count, char **arguments) {
     static const float rgb[3] = {0.05f, 0.9f, 0.1f};
     UpglowCube *cube = NULL;

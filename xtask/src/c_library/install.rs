@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use super::FOLDER;
+use super::isolated::isolate;
 use crate::step::{StepError, cargo, finish, output_and_messages_of, read, target_dir};
 
 /// All crates of the workspace have this version.
@@ -75,7 +76,14 @@ pub(crate) fn install(root: &Path, prefix: &Path) -> Result<Installed, StepError
     let source = root.join(FOLDER);
     let lib = &installed.lib;
     place(&source.join("include/upglow.h"), &installed.include.join("upglow.h"))?;
-    place(&built.join("libupglow_c.a"), &lib.join("libupglow.a"))?;
+    for text in LICENSES {
+        place(&source.join(text), &prefix.join("share/licenses/upglow").join(text))?;
+    }
+    let library = lib.join("libupglow.a");
+    place(&built.join("libupglow_c.a"), &library)?;
+    if std::env::consts::OS == "linux" {
+        isolate(&library, &library)?;
+    }
     let shared =
         format!("{}upglow_c{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
     place(&built.join(shared), &lib.join(&names.file))?;
@@ -88,6 +96,9 @@ pub(crate) fn install(root: &Path, prefix: &Path) -> Result<Installed, StepError
     }
     Ok(installed)
 }
+
+/// The terms of the code and of the tables in it.
+const LICENSES: [&str; 3] = ["LICENSE-APACHE", "LICENSE-MIT", "LICENSE-TABLES.md"];
 
 /// Files for other people's build systems, and where those look for them below `lib`.
 const PACKAGING: [(&str, &str); 4] = [
