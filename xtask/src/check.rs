@@ -5,7 +5,9 @@ use std::process::Command;
 use std::time::Instant;
 
 use crate::step::{Step, StepError, cargo, finish, finish_aloud, output_of};
-use crate::{c_library, explorer, guide, layers, python, python_wheel, tables, words};
+use crate::{
+    c_library, explorer, guide, layers, links, packages, python, python_wheel, site, tables, words,
+};
 
 /// Set for the slow tests, so that they may take larger samples.
 const SLOW_VARIABLE: &str = "UPGLOW_SLOW";
@@ -34,7 +36,8 @@ const SLOW_STEP: Step =
 /// Every step; the slow one is the last.
 fn all_steps() -> Vec<Step> {
     let bindings = c_library::STEPS.into_iter().chain(python_wheel::STEPS);
-    let others = words::STEPS.into_iter().chain(explorer::STEPS).chain(bindings);
+    let texts = words::STEPS.into_iter().chain(links::STEPS).chain(site::STEPS);
+    let others = texts.chain(packages::STEPS).chain(explorer::STEPS).chain(bindings);
     STEPS.into_iter().chain(others).chain([SLOW_STEP]).collect()
 }
 

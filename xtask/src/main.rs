@@ -15,10 +15,14 @@ mod count;
 mod explorer;
 mod guide;
 mod layers;
+mod links;
 mod llvm;
 mod outputs;
+mod packages;
 mod python;
 mod python_wheel;
+mod sbom;
+mod site;
 mod step;
 mod tables;
 mod words;
@@ -38,6 +42,8 @@ usage: cargo xtask COMMAND
   header           write bindings/c/include/upglow.h from bindings/c/src
   bench            run every bench and write docs/PERFORMANCE.md
   install-c DIR    install the C library, its header, and files for pkg-config and CMake below DIR
+  site             make target/site/book from the pages of this repository, with mdBook
+  sbom FILE        write the packages of Cargo.lock to FILE as a CycloneDX document
   count [FOLDER]   count source lines, public names and the program's crates, here or in FOLDER
   outputs PROGRAM FOLDER
                    make every product of the executable PROGRAM, an `upglow` of any commit, in the
@@ -79,6 +85,8 @@ fn run(root: &Path, args: &[&str]) -> Result<bool, StepError> {
             let installed = c_library::install(root, Path::new(prefix))?;
             println!("install-c: {}, {}", installed.include.display(), installed.lib.display());
         }
+        ["site"] => println!("site: {}", site::build(root)?.join("index.html").display()),
+        ["sbom", file] => println!("sbom: {} packages", sbom::write(root, Path::new(file))?),
         ["count"] => println!("{}", count::count(root)?),
         ["count", folder] => println!("{}", count::count(Path::new(folder))?),
         ["help" | "--help" | "-h"] => println!("{HELP}"),

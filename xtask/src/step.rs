@@ -136,13 +136,17 @@ fn shown(command: &Command) -> String {
     words.map(|word| word.to_string_lossy()).collect::<Vec<_>>().join(" ")
 }
 
-/// Files of the workspace at `root` that Git knows or would add, by their paths below it.
+/// Files of the workspace at `root` that Git knows or would add, by their paths below it; a link is another name of
+/// one of them.
 pub(crate) fn tracked_files(root: &Path) -> Result<Vec<String>, StepError> {
     let mut git = Command::new("git");
     git.args(["ls-files", "--cached", "--others", "--exclude-standard"]).current_dir(root);
     // One that was deleted, and is not yet committed, is listed as well.
     let listed = output_of(git)?;
-    let paths = listed.lines().filter(|path| root.join(path).is_file());
+    let paths = listed.lines().filter(|path| {
+        let path = root.join(path);
+        path.is_file() && !path.is_symlink()
+    });
     Ok(paths.map(str::to_owned).collect())
 }
 

@@ -16,7 +16,7 @@ QUADRATURE = 2e-3
 
 
 def integral(density: np.ndarray, nm: np.ndarray) -> float:
-    return float(np.trapezoid(density, nm))
+    return float((np.diff(nm) * (density[1:] + density[:-1])).sum() / 2)
 
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
