@@ -1,15 +1,18 @@
 //! The command line: each option is one field here, with its name, value, default and help.
 
 mod build;
+mod cube_first;
 #[cfg(feature = "explore")]
 mod explore;
 mod fit_matrix;
+mod manual;
 mod pictures;
 mod relight;
+mod usage;
 mod values;
 
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Parser, Subcommand};
 use upglow::{CoefficientTable, Interpolation};
@@ -21,9 +24,11 @@ use upglow_terminal::{Console, Threads, count, in_range, word};
 pub(crate) use build::{
     BuildArgs, ContractArgs, FitArgs, ModelArgs, ModelName, SlopeLimits, limit_text,
 };
+pub(crate) use cube_first::with_cube_first;
 #[cfg(feature = "explore")]
 pub(crate) use explore::{BuildWords, ExploreArgs};
 pub(crate) use fit_matrix::FitMatrixArgs;
+pub(crate) use manual::{CompletionsArgs, ManArgs};
 pub(crate) use pictures::{
     BakeArgs, BakeForm, BakeFormat, CheckArgs, ExamplesArgs, LintArgs, ReadArgs, SampleName,
 };
@@ -34,7 +39,7 @@ use values::{lights, rgb_space, slope_limit};
 /// Turns RGB colors into physically valid spectral materials, with fluorescence where no
 /// reflectance can match the color.
 #[derive(Clone, Debug, Parser)]
-#[command(name = "upglow", version, max_term_width = 100)]
+#[command(name = "upglow", version, max_term_width = 100, after_help = usage::PROGRAM)]
 pub(crate) struct Args {
     #[command(subcommand)]
     pub(crate) command: Command,
@@ -45,36 +50,55 @@ pub(crate) struct Args {
 #[derive(Clone, Debug, Subcommand)]
 pub(crate) enum Command {
     /// Fit a material to every node of a grid over RGB and write them all to one file, a cube
+    #[command(after_help = usage::BUILD)]
     Build(Box<BuildArgs>),
     /// Show what a cube or a coefficient table contains and how well it matches its colors
+    #[command(after_help = usage::INSPECT)]
     Inspect(InspectArgs),
     /// Recompute the physics of a cube from its stored numbers; exit with 1 if a law is broken
+    #[command(after_help = usage::VERIFY)]
     Verify(VerifyArgs),
     /// Show the material of one color
+    #[command(after_help = usage::COLOR)]
     Color(ColorArgs),
     /// Fit a material to a measured re-radiation (Donaldson) matrix
+    #[command(after_help = usage::FIT_MATRIX)]
     FitMatrix(FitMatrixArgs),
     /// Show how colors look under other lights and for other observers, as a table and as swatches
+    #[command(after_help = usage::RELIGHT)]
     Relight(RelightArgs),
     /// Convert a cube for other programs: CSV, coefficient table or shader source, or a page to explore it
+    #[command(after_help = usage::EXPORT)]
     Export(ExportArgs),
     /// Convert pictures to files of materials, spectra or colors under a light
+    #[command(after_help = usage::BAKE)]
     Bake(Box<BakeArgs>),
     /// Report which texels of pictures a reflectance can match, which need fluorescence, and which
     /// no material can match
+    #[command(after_help = usage::CHECK)]
     Check(Box<CheckArgs>),
     /// Show the spectrum or material of one texel of a baked or spectral EXR
+    #[command(after_help = usage::READ)]
     Read(ReadArgs),
     /// Report whether files are well-formed spectral or bispectral EXR; exit with 1 if one is not
+    #[command(after_help = usage::LINT)]
     Lint(LintArgs),
     /// Explore a cube in a browser: pick colors, see their spectra, light them, build other cubes
     #[cfg(feature = "explore")]
+    #[command(after_help = usage::EXPLORE)]
     Explore(ExploreArgs),
     /// Explore a cube in a browser; in builds with the feature explore
     #[cfg(not(feature = "explore"))]
     Explore(MovedArgs),
     /// Draw example pictures to try the other commands on
+    #[command(after_help = usage::EXAMPLES)]
     Examples(ExamplesArgs),
+    /// Print the script with which a shell completes command lines
+    #[command(hide = true)]
+    Completions(CompletionsArgs),
+    /// Write a manual page for each command
+    #[command(hide = true)]
+    Man(ManArgs),
     /// Moved to the program `upglow-study`
     #[command(hide = true)]
     Figures(MovedArgs),
@@ -134,6 +158,7 @@ pub(crate) struct InspectArgs {
     pub(crate) space: Option<RgbSpace>,
     #[arg(
         long,
+        alias = "light",
         value_name = "NAME|FILE",
         help = format!("Light of a coefficient table: {} [default: D65]", lights())
     )]
@@ -145,6 +170,7 @@ pub(crate) struct InspectArgs {
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct VerifyArgs {
     /// Cube made by `upglow build`
+    #[arg(value_name = "CUBE")]
     pub(crate) file: PathBuf,
     /// Number of random colors to try between the nodes
     #[arg(long, default_value = "1000000", value_name = "N", value_parser = count::<usize>)]
@@ -163,6 +189,7 @@ pub(crate) struct VerifyArgs {
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct ColorArgs {
     /// Cube made by `upglow build`
+    #[arg(value_name = "CUBE")]
     pub(crate) file: PathBuf,
     /// Linear red in the RGB space of the cube, 0 to 1; up to 10 with --direct, --kind or --known
     #[arg(value_name = "R", allow_hyphen_values = true)]
@@ -221,9 +248,14 @@ pub(crate) struct ColorArgs {
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct ExportArgs {
     /// Cube made by `upglow build`
+    #[arg(value_name = "CUBE")]
     pub(crate) file: PathBuf,
+    /// The file to write, where it is not given by --output
+    #[arg(value_name = "OUTPUT", required_unless_present = "output")]
+    named: Option<PathBuf>,
     /// File to write
-    pub(crate) output: PathBuf,
+    #[arg(long, short, value_name = "FILE", conflicts_with = "named")]
+    output: Option<PathBuf>,
     /// csv: one line per node; coeff: reflectances only, for Mitsuba 3 and colour-science; html: a page
     /// to explore it with, offline; mtlx: a MaterialX surface with its color under --light, for RGB
     /// renderers, and the same for USD; clf, cube: a table of the nearest colors that materials show, for
@@ -261,6 +293,13 @@ pub(crate) struct ExportArgs {
     pub(crate) engine: Option<RgbSpace>,
     #[command(flatten)]
     pub(crate) threads: Threads,
+}
+
+impl ExportArgs {
+    /// Where the file goes.
+    pub(crate) fn output(&self) -> &Path {
+        self.named.as_deref().or(self.output.as_deref()).unwrap_or(Path::new(""))
+    }
 }
 
 /// The kinds of exported file; the word is also the suffix of the file.

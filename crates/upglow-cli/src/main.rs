@@ -20,7 +20,7 @@ use std::process::ExitCode;
 
 fn main() -> ExitCode {
     silence_panics_of_damaged_files();
-    upglow_terminal::run(commands::run)
+    upglow_terminal::run(args::with_cube_first(std::env::args_os()), commands::run)
 }
 
 /// The OpenEXR decoder may panic on a damaged block; the panic is caught and reported as an error,

@@ -10,6 +10,7 @@ mod output;
 mod progress;
 mod values;
 
+use std::ffi::OsString;
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -28,13 +29,17 @@ pub fn parse<Args: Parser>(words: impl IntoIterator<Item = String>) -> Result<Ar
     Args::try_parse_from(words).map_err(|error| Failure::Usage(failure::usage_line(&error)))
 }
 
-/// Reads the command line, runs `work` with it, and returns the exit status.
+/// Reads the words of a command line, the first of which is the program, runs `work` with what they say, and
+/// returns the exit status.
 ///
 /// Error messages start with the name that `Args` gives to its command.
-pub fn run<Args: Parser>(work: impl FnOnce(Args) -> Result<(), Failure>) -> ExitCode {
+pub fn run<Args: Parser>(
+    words: impl IntoIterator<Item = OsString>,
+    work: impl FnOnce(Args) -> Result<(), Failure>,
+) -> ExitCode {
     let command = Args::command();
     let program = command.get_name();
-    match Args::try_parse() {
+    match Args::try_parse_from(words) {
         Ok(args) => match work(args) {
             Ok(()) => ExitCode::SUCCESS,
             Err(failure) => failure.report(program),

@@ -31,7 +31,13 @@ pub(crate) struct ContractArgs {
     /// chromaticities Rx,Ry,Gx,Gy,Bx,By,Wx,Wy
     #[arg(long, default_value = "acescg", value_parser = rgb_space)]
     pub(crate) space: RgbSpace,
-    #[arg(long, default_value = "D65", value_name = "NAME|FILE", help = format!("Light: {}", lights()))]
+    #[arg(
+        long,
+        alias = "light",
+        default_value = "D65",
+        value_name = "NAME|FILE",
+        help = format!("Light: {}", lights())
+    )]
     pub(crate) illuminant: String,
     #[command(flatten)]
     pub(crate) light: LightArgs,

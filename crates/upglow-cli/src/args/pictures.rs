@@ -177,6 +177,7 @@ pub(crate) struct CheckArgs {
     pub(crate) cube: Option<PathBuf>,
     #[arg(
         long,
+        alias = "light",
         value_name = "NAME|FILE",
         conflicts_with = "cube",
         help = format!("Light: {} [default: D65]", lights())
@@ -232,8 +233,8 @@ pub(crate) struct LintArgs {
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct ExamplesArgs {
     /// Folder for the EXR files; created if it does not exist
-    #[arg(long, default_value = "examples", value_name = "FOLDER")]
-    pub(crate) out: PathBuf,
+    #[arg(long, short, alias = "out", default_value = "examples", value_name = "FOLDER")]
+    pub(crate) output: PathBuf,
 }
 
 fn inputs_help() -> String {

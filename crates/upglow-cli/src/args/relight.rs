@@ -10,6 +10,7 @@ use super::{LightArgs, PaintArgs};
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct RelightArgs {
     /// Cube made by `upglow build`
+    #[arg(value_name = "CUBE")]
     pub(crate) file: PathBuf,
     /// Linear red in the RGB space of the cube, 0 to 1; up to 10 with --direct or --kind
     #[arg(value_name = "R", allow_hyphen_values = true, requires = "blue")]

@@ -25,10 +25,10 @@ struct PictureReport {
 }
 
 pub(crate) fn run(args: &ExamplesArgs, console: &Console) -> Result<(), Failure> {
-    files::make_folder(&args.out)?;
+    files::make_folder(&args.output)?;
     let mut pictures = Vec::new();
     for picture in ExamplePicture::ALL {
-        let path = args.out.join(format!("{}.exr", picture.name));
+        let path = args.output.join(format!("{}.exr", picture.name));
         write(&path, &picture).map_err(|error| files::unwritten_exr(&path, error))?;
         let [width, height] = picture.size;
         let file = path.display().to_string();

@@ -46,8 +46,8 @@ pub(crate) fn run(args: &ExportArgs, console: &Console) -> Result<(), Failure> {
         Some(name) => Some(plan::light("--light", name, &args.light_file)?),
         None => None,
     };
-    files::check_ending(&args.output, &[kind.name()])?;
-    files::check_output_of(&args.output, Some(&args.file), &RealPictures::default())?;
+    files::check_ending(args.output(), &[kind.name()])?;
+    files::check_output_of(args.output(), Some(&args.file), &RealPictures::default())?;
     let cube = files::read_cube(&args.file)?;
     let has_dyes = match kind {
         ExportFormat::Coeff => false,
@@ -77,10 +77,10 @@ pub(crate) fn run(args: &ExportArgs, console: &Console) -> Result<(), Failure> {
         }
     };
     let Beside { mut files, names: textures } = beside;
-    files.push(files::aside(&args.output, &bytes)?);
-    files::write_together(&args.output, files)?;
+    files.push(files::aside(args.output(), &bytes)?);
+    files::write_together(args.output(), files)?;
     console.print(&ExportReport {
-        file: args.output.display().to_string(),
+        file: args.output().display().to_string(),
         format: kind.name(),
         bytes: bytes.len() as u64,
         nodes,
@@ -118,18 +118,18 @@ fn shader(
     cube: &Cube,
     language: Language,
 ) -> Result<(Vec<u8>, Beside), Failure> {
-    let stem = args.output.file_stem().unwrap_or_default().to_string_lossy();
+    let stem = args.output().file_stem().unwrap_or_default().to_string_lossy();
     let shader = match &args.engine {
         Some(engine) => Shader::of_matrices(cube, engine, language, &stem),
         None => Shader::new(cube, language, &stem),
     };
     let shader = shader.map_err(|error| match error {
-        ShaderError::Name { .. } => Failure::file(&args.output, error),
+        ShaderError::Name { .. } => Failure::file(args.output(), error),
         ShaderError::Engine(_) => Failure::option("--engine", error),
         error => Failure::file(&args.file, error),
     })?;
     let paths: Vec<PathBuf> =
-        shader.payload.iter().map(|file| args.output.with_file_name(&file.name)).collect();
+        shader.payload.iter().map(|file| args.output().with_file_name(&file.name)).collect();
     check_beside(args, &paths)?;
     let mut beside = Beside::default();
     for (path, file) in paths.iter().zip(&shader.payload) {
@@ -140,7 +140,7 @@ fn shader(
 
 /// Checks files that are written beside the output.
 fn check_beside(args: &ExportArgs, paths: &[PathBuf]) -> Result<(), Failure> {
-    files::check_has_place(&args.output)?;
+    files::check_has_place(args.output())?;
     let check =
         |path: &PathBuf| files::check_output_of(path, Some(&args.file), &RealPictures::default());
     paths.iter().try_for_each(check)
@@ -163,14 +163,14 @@ fn material(
     })??;
     let texture = ColorTexture::new(cube.resolution(), &colors)
         .map_err(|error| Failure::file(&args.file, error))?;
-    let name = args.output.with_extension("colors.exr");
-    let file = documents::relative(&name, &args.output)?;
-    let stem = args.output.file_stem().unwrap_or_default().to_string_lossy();
+    let name = args.output().with_extension("colors.exr");
+    let file = documents::relative(&name, args.output())?;
+    let stem = args.output().file_stem().unwrap_or_default().to_string_lossy();
     let space = InteropSpace::linear_id(&cube.contract().space);
     let documents = Documents::of_cube(&stem, &file, space)
-        .map_err(|error| Failure::file(&args.output, error))?;
-    let node = color_node().map(|file| (args.output.with_file_name(&file.name), file.bytes));
-    let stage = args.output.with_extension("usda");
+        .map_err(|error| Failure::file(args.output(), error))?;
+    let node = color_node().map(|file| (args.output().with_file_name(&file.name), file.bytes));
+    let stage = args.output().with_extension("usda");
     let paths = [name, node[0].0.clone(), node[1].0.clone(), stage];
     check_beside(args, &paths)?;
     let mut beside = Beside::default();
@@ -198,7 +198,7 @@ fn colors_aside(path: &Path, texture: &ColorTexture, space: &RgbSpace) -> Result
 
 /// The format given by the option or by the suffix of the output.
 fn kind(args: &ExportArgs) -> Result<ExportFormat, Failure> {
-    let suffix = args.output.extension().and_then(|suffix| suffix.to_str()).unwrap_or_default();
+    let suffix = args.output().extension().and_then(|suffix| suffix.to_str()).unwrap_or_default();
     let from_suffix = ExportFormat::named(suffix).ok();
     let kind = args.format.or(from_suffix).ok_or_else(|| {
         let names: Vec<&str> = ExportFormat::ALL.iter().map(|format| format.name()).collect();

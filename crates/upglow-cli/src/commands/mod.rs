@@ -18,6 +18,7 @@ mod inspect;
 mod inspect_table;
 mod lint;
 mod luts;
+mod manual;
 mod material_report;
 mod read;
 mod relight;
@@ -47,6 +48,8 @@ pub(crate) fn run(Args { command, console }: Args) -> Result<(), Failure> {
         #[cfg(not(feature = "explore"))]
         Command::Explore(_) => Err(Failure::option("explore", WITHOUT_SERVER)),
         Command::Examples(args) => examples::run(&args, &console),
+        Command::Completions(args) => manual::completions(&args, &console),
+        Command::Man(args) => manual::man(&args, &console),
         Command::Figures(_) => Err(moved("figures")),
         Command::Reproduce(_) => Err(moved("reproduce")),
     }

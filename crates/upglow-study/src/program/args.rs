@@ -38,8 +38,8 @@ pub(crate) enum Command {
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct FiguresArgs {
     /// Folder for the SVG and PNG files; created if it does not exist
-    #[arg(long, default_value = "figures", value_name = "FOLDER")]
-    pub(crate) out: PathBuf,
+    #[arg(long, short, alias = "out", default_value = "figures", value_name = "FOLDER")]
+    pub(crate) output: PathBuf,
     /// Draw only this figure: 1 to 8 are those of the paper, 9 and 10 are our own
     #[arg(long, value_name = "N", value_parser = in_range([1, LAST_FIGURE]))]
     pub(crate) only: Option<usize>,

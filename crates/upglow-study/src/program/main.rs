@@ -26,7 +26,7 @@ mod ways;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    upglow_terminal::run(commands::run)
+    upglow_terminal::run(std::env::args_os(), commands::run)
 }
 
 #[cfg(test)]

@@ -28,20 +28,21 @@ struct FigureReport {
 
 pub(super) fn run(args: &FiguresArgs, console: &Console) -> Result<(), Failure> {
     // The folder is created later, when there is something to put in it.
-    let probe = if args.out.is_dir() { args.out.join("figure.svg") } else { args.out.clone() };
+    let probe =
+        if args.output.is_dir() { args.output.join("figure.svg") } else { args.output.clone() };
     files::check_output(&probe)?;
     let cubes = Cubes::new(args.resolution);
     let draw = |bar: &Bar| figures(&cubes, args.only, args.display, bar);
     let drawn = console.work(args.threads, draw)?.map_err(failure)?;
-    files::make_folder(&args.out)?;
+    files::make_folder(&args.output)?;
     let written = drawn.iter().map(|figure| write(args, figure)).collect::<Result<Vec<_>, _>>()?;
-    let folder = args.out.display().to_string();
+    let folder = args.output.display().to_string();
     console.print(&FiguresReport { folder, figures: written })
 }
 
 fn write(args: &FiguresArgs, figure: &Figure) -> Result<FigureReport, Failure> {
     let [svg, png] =
-        ["svg", "png"].map(|suffix| args.out.join(format!("{}.{suffix}", figure.name)));
+        ["svg", "png"].map(|suffix| args.output.join(format!("{}.{suffix}", figure.name)));
     files::write(&svg, figure.svg.as_bytes())?;
     files::write(&png, &raster::rendered(&figure.svg, PNG_SCALE))?;
     Ok(FigureReport {
