@@ -27,7 +27,7 @@ pub(crate) fn warn_of_own_light(cube: &Cube) -> Option<String> {
 
 /// Prints on standard error what is wrong with one picture of several.
 pub(crate) fn failed(line: &str) {
-    say(&format!("upglow: {}", line.replace(['\n', '\r'], " ")));
+    say(&format!("upglow: {line}"));
 }
 
 /// Lines of names and values, with the values aligned.
@@ -159,12 +159,17 @@ pub(crate) fn decimal(value: f64, width: usize, decimals: usize) -> String {
     }
 }
 
-/// A cell of a CSV file: text, in double quotes if it contains a separator.
+/// A cell of a CSV file: text, in double quotes if it contains a separator, and behind `'` if spreadsheets would
+/// calculate it as a formula.
 pub(crate) fn quoted(text: &str) -> String {
+    let text = match text.starts_with(['=', '+', '-', '@']) {
+        true => format!("'{text}"),
+        false => text.to_owned(),
+    };
     if text.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))
     } else {
-        text.to_owned()
+        text
     }
 }
 
@@ -232,5 +237,6 @@ mod tests {
     fn text_with_a_separator_is_quoted() {
         assert_eq!(quoted("a,\"b\""), "\"a,\"\"b\"\"\"");
         assert_eq!(quoted("ATTO_390"), "ATTO_390");
+        assert_eq!(quoted("=HYPERLINK(\"x\",1)"), "\"'=HYPERLINK(\"\"x\"\",1)\"");
     }
 }

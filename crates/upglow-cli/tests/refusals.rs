@@ -271,7 +271,11 @@ fn command_lines_that_do_not_fit() {
         ("build --quantum-yield x -o x", "--quantum-yield: unknown quantum yield \"x\", expected"),
         (
             "build --model dyes --optical-density 0 -o x",
-            "--optical-density: optical density 0, expected > 0",
+            "--optical-density: optical density 0, expected > 0 and at most 100",
+        ),
+        (
+            "build --model dyes --optical-density 1e3 -o x",
+            "--optical-density: optical density 1000, expected > 0 and at most 100",
         ),
         (
             "build --model analytic --emission-fwhm-nm 5 -o x",
@@ -436,4 +440,95 @@ fn commands_that_moved_name_their_program() {
         );
         assert_eq!(folder.refused(2, &format!("{command} -o a.md --only 4 --help")), expected);
     }
+}
+
+#[test]
+fn the_densest_dyes_that_build_accepts_verify_accepts_too() {
+    let folder = Folder::new();
+    for dyes in ["konig8", "wide8", "open8"] {
+        folder.done(&format!(
+            "build --model dyes --dyes {dyes} --optical-density 100 --resolution 5 -o cube"
+        ));
+        folder.done("verify cube --points 500");
+    }
+}
+
+/// Every reader of numbers in text, with the rows of a valid file and the command that reads it.
+#[test]
+fn extreme_numbers_in_files_end_in_one_short_line_or_in_numbers() {
+    const EXTREME: [&str; 12] = [
+        "1e308", "-1e308", "5e-324", "1e-310", "1e30", "1e31", "1e-30", "1e-31", "inf", "NaN",
+        "1e154", "1e-200",
+    ];
+    let folder = folder_with_cube();
+    std::fs::create_dir(folder.path().join("dyes")).unwrap();
+    folder.write("dyes/b.csv", dye(500));
+    let matrix = || {
+        let axis: Vec<u32> = (300..=780).step_by(20).collect();
+        let row = |values: Vec<String>| values.join(",") + "\n";
+        let head = axis.iter().map(u32::to_string).collect();
+        let mut text = format!("outgoing_nm\\incident_nm per_band,{}", row(head));
+        for out in &axis {
+            let cells = axis.iter().map(|nm| if nm == out { "0.5" } else { "0" }.to_owned());
+            text += &format!("{out},{}", row(cells.collect()));
+        }
+        text
+    };
+    let files = [
+        (
+            "light.csv",
+            curves("power", |nm| format!("{}", nm / 10)),
+            "relight cube 0.5 0.4 0.3 --light light.csv",
+        ),
+        (
+            "light.csv",
+            curves("power", |nm| format!("{}", nm / 10)),
+            "build --resolution 2 --illuminant light.csv -o made",
+        ),
+        ("eye.csv", eye(), "relight cube 0.5 0.4 0.3 --observer eye.csv"),
+        ("eye.csv", eye(), "build --resolution 2 --observer eye.csv -o made"),
+        ("dyes/a.csv", dye(420), "build --resolution 2 --dyes dyes -o made"),
+        (
+            "colors.csv",
+            "r,g,b\n0.5,0.4,0.3\n0.1,0.2,0.3\n".into(),
+            "relight cube --colors colors.csv",
+        ),
+        (
+            "colors.csv",
+            "r,g,b\n0.5,0.4,0.3\n0.1,0.2,0.3\n".into(),
+            "relight cube --colors colors.csv --direct",
+        ),
+        ("matrix.csv", matrix(), "fit-matrix matrix.csv"),
+    ];
+    let mut refused = 0;
+    for (name, valid, words) in &files {
+        for (turn, extreme) in EXTREME.iter().enumerate() {
+            // One cell, a whole column, or all but one cell of it.
+            for kind in 0..3 {
+                let lines = valid.lines().count() - 1;
+                let place = 1 + (lines * (turn + 1)) / (EXTREME.len() + 1);
+                let edit = |(i, line): (usize, &str)| {
+                    let mut cells: Vec<&str> = line.split(',').collect();
+                    let is_place = i == place;
+                    let hit = i > 0 && [is_place, true, !is_place][kind];
+                    if hit {
+                        let last = cells.len() - 1;
+                        cells[(1 + turn % last).min(last)] = extreme;
+                    }
+                    cells.join(",") + "\n"
+                };
+                folder.write(name, valid.lines().enumerate().map(edit).collect::<String>());
+                let run = folder.run(&format!("--quiet {words}"));
+                let what = format!("{words}, {extreme}, {kind}: {}{}", run.stdout, run.stderr);
+                let has_numbers = !run.stdout.contains("NaN") && !run.stdout.contains(" inf");
+                match run.status {
+                    0 => assert!(has_numbers, "{what}"),
+                    1 | 2 => assert!(one_line(&run.stderr).len() < 250, "{what}"),
+                    _ => panic!("{what}"),
+                }
+                refused += usize::from(run.status != 0);
+            }
+        }
+    }
+    assert!(refused > 80, "{refused}");
 }

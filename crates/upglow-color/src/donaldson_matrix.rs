@@ -4,6 +4,7 @@ use crate::choices;
 use crate::contract::{Contract, ContractError};
 use crate::illuminant::{Illuminant, MissingUltraviolet};
 use crate::observer::Observer;
+use crate::rounding::shown;
 use crate::values::Xyz;
 
 mod bfc;
@@ -85,7 +86,7 @@ pub enum DonaldsonError {
         found: usize,
     },
     /// A wavelength is out of range or not above the one before it.
-    #[error("{axis} wavelength {found} nm, expected ascending numbers from {} to {} nm", AXIS_RANGE_NM[0], AXIS_RANGE_NM[1])]
+    #[error("{axis} wavelength {} nm, expected ascending numbers from {} to {} nm", shown(*found), AXIS_RANGE_NM[0], AXIS_RANGE_NM[1])]
     Wavelength {
         /// `incident` or `outgoing`.
         axis: &'static str,
@@ -112,7 +113,8 @@ pub enum DonaldsonError {
     },
     /// A value is no possible share.
     #[error(
-        "{found} from {incident_nm} to {outgoing_nm} nm, expected a share of -{MOST} to {MOST} per band"
+        "{} from {incident_nm} to {outgoing_nm} nm, expected a share of -{MOST} to {MOST} per band",
+        shown(*found)
     )]
     Value {
         /// Where the light arrives, nm.

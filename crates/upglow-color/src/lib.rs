@@ -85,7 +85,7 @@ pub use illuminant::{Illuminant, IlluminantError, MissingUltraviolet};
 pub use lab::{Lab, lab_from_xyz, xyz_from_lab};
 pub use matrix::Matrix3;
 pub use metric::{Goal, Metric};
-pub use names::NameError;
+pub use names::{NameError, is_plain};
 pub use observer::{Observer, ObserverError};
 pub use reduced_basis::{ReducedBasis, ReducedBasisError};
 pub use reduced_matrix::{ReducedMatrix, Reduction, Xyzu};

@@ -38,10 +38,9 @@ impl NameError {
     ///
     /// # Errors
     ///
-    /// [`NameError::Control`] if it holds a control character or a separator of lines.
+    /// [`NameError::Control`] if a character is not [plain](is_plain).
     pub fn check_text(text: &str) -> Result<(), Self> {
-        let breaks = |c: char| c.is_control() || matches!(c, '\u{2028}' | '\u{2029}');
-        if text.contains(breaks) {
+        if !text.chars().all(is_plain) {
             return Err(Self::Control { found: text.chars().take(40).collect() });
         }
         Ok(())
@@ -73,6 +72,19 @@ impl NameError {
     }
 }
 
+/// Whether a character stays in its place in a line of text: no control character, separator of lines or mark that
+/// changes the direction of others. Names hold no others, and programs print none.
+#[must_use]
+pub fn is_plain(c: char) -> bool {
+    let moves = matches!(
+        c,
+        '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}'
+    );
+    // What XML cannot hold either.
+    let is_none = matches!(c, '\u{feff}' | '\u{fffe}' | '\u{ffff}');
+    !c.is_control() && !moves && !is_none
+}
+
 /// The name of what was read from a file: the stem of the file's name, or the whole name where the stem
 /// is that of something built in with other numbers. So `A.csv` with another light than illuminant A
 /// is called "A.csv".
@@ -82,4 +94,20 @@ pub(crate) fn name_after_file(path: &Path, is_taken: impl Fn(&str) -> bool) -> S
     };
     let stem = text(path.file_stem());
     if is_taken(&stem) { text(path.file_name()) } else { stem }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn letters_of_all_scripts_are_plain_and_what_moves_others_is_not() {
+        assert!("CIE 1931 2° 照明 ضوء <b>&\"'\\ ❤\u{200d}🔥".chars().all(is_plain));
+        for odd in
+            "\u{0}\t\n\r\u{1b}\u{7f}\u{85}\u{9b}\u{202e}\u{2067}\u{200f}\u{2029}\u{feff}".chars()
+        {
+            assert!(!is_plain(odd), "{odd:?}");
+            assert!(NameError::check_text(&format!("a{odd}b")).is_err());
+        }
+    }
 }

@@ -2,7 +2,7 @@
 
 use crate::choices;
 use crate::grid::Grid;
-use crate::rounding::whole;
+use crate::rounding::{shown, whole};
 use crate::spectrum::Spectrum;
 
 /// What samples of a curve must be.
@@ -108,7 +108,7 @@ impl SampleRules {
             _ if found > 0.0 && nm < limit_nm => format!("0 below {limit_nm} nm"),
             _ => return Ok(()),
         };
-        Err(SamplesError::value(place(), column, found.to_string(), expected))
+        Err(SamplesError::value(place(), column, shown(found), expected))
     }
 
     /// Checks every sample of a curve that was not read from samples.

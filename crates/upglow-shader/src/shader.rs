@@ -3,7 +3,7 @@
 use std::f32::consts::LN_10;
 use std::fmt::Write as _;
 
-use upglow::{Accounting, AnalyticModel, Cube, FilmModel, Model};
+use upglow::{Accounting, AnalyticModel, Cube, FARTHEST_NM, FilmModel, Model};
 use upglow_color::rounding::to_single;
 use upglow_color::{Grid, Illuminant, ReducedBasis, RgbSpace};
 
@@ -36,8 +36,6 @@ pub struct PayloadFile {
     pub bytes: Vec<u8>,
 }
 
-/// Wavelengths are clamped to this, nm: beyond it, parabolas overflow.
-const FARTHEST_NM: f32 = 1e4;
 /// The greatest number below 1 for drivers with one bit less than single precision. A draw of 1
 /// itself could fall beyond the last wavelength with a density above 0.
 const BELOW_ONE: f32 = 1.0 - f32::EPSILON;
@@ -185,7 +183,7 @@ fn heading(
     let mut text = String::new();
     let mut line = |words: &str| {
         // Writing to a string does not fail.
-        let _ = writeln!(text, "{}", format!("// {words}").trim_end());
+        let _ = writeln!(text, "{}", format!("// {}", in_comment(words)).trim_end());
     };
     line(&format!("Made by upglow {}; do not edit.", env!("CARGO_PKG_VERSION")));
     line("SPDX-License-Identifier: MIT OR Apache-2.0");
@@ -202,6 +200,13 @@ fn heading(
     binding(language, has_curves).lines().for_each(line);
     text.push('\n');
     text
+}
+
+/// Words as a comment of one line holds them: names from a cube may have signs that end a comment, continue it on the
+/// next line or close the element of a page that the code is in; `_` stands for those.
+fn in_comment(words: &str) -> String {
+    let is_word = |c: char| c.is_alphanumeric() || " .,;:-_+()'°×".contains(c);
+    words.chars().map(|c| if is_word(c) { c } else { '_' }).collect()
 }
 
 /// How to bind the textures.

@@ -62,10 +62,11 @@ impl Element {
     }
 }
 
-/// Escapes text for XML, without control characters, which XML cannot represent.
+/// Escapes text for XML, without characters that XML cannot represent.
 #[must_use]
 pub fn escape(text: &str) -> String {
-    let plain: String = text.chars().filter(|c| !c.is_control()).collect();
+    let plain: String =
+        text.chars().filter(|c| !c.is_control() && !['\u{fffe}', '\u{ffff}'].contains(c)).collect();
     plain.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 

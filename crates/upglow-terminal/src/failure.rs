@@ -9,7 +9,7 @@ use std::process::ExitCode;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use upglow_fit::Stopped;
 
-use crate::output::say;
+use crate::output::{one_line, say};
 
 /// Why a command failed. The line names the place of the fault, what was found and what was expected.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -153,11 +153,6 @@ pub(crate) fn usage_line(error: &clap::Error) -> String {
     });
     let joined = told.collect::<Vec<_>>().join(" ");
     joined.trim_start_matches("error: ").replace(" tip: ", "; tip: ")
-}
-
-/// Keeps a message with line breaks in file names on one line.
-fn one_line(text: &str) -> String {
-    text.replace(['\n', '\r'], " ")
 }
 
 #[cfg(test)]

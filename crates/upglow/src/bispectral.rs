@@ -1,7 +1,16 @@
 //! The trait by which a renderer evaluates and samples a material.
 
+/// Wavelengths are clamped to this, nm: beyond it, parabolas overflow in single precision.
+pub const FARTHEST_NM: f32 = 1e4;
+
 /// A material that reflects and re-radiates: [`crate::Mixture`] in double precision,
 /// [`crate::PackedMixture`] in single.
+///
+/// # Which wavelengths
+///
+/// Any number is a wavelength. Those outside 0 to 10 000 nm count as the nearer end. For NaN every function returns NaN,
+/// and the samplers draw nothing. Shares are in 0..=1 to the last bit, in double precision and in single, and so is the
+/// throughput of a path from the light where the table of a dye holds its whole emission. Nothing panics.
 ///
 /// # Drawing wavelengths
 ///

@@ -45,7 +45,7 @@ mod random;
 pub mod tensor;
 
 pub use aside::Aside;
-pub use bispectral::{Bispectral, Draw, Sample};
+pub use bispectral::{Bispectral, Draw, FARTHEST_NM, Sample};
 pub use cube::coefficient_table::{CoefficientTable, CoefficientTableError};
 pub use cube::error::{CubeFileError, ReadCubeError};
 pub use cube::header::CubeCurves;

@@ -35,7 +35,7 @@ pub struct DyeOptions {
     pub accounting: Accounting,
     /// 1 (default), another number, or measured.
     pub quantum_yield: QuantumYield,
-    /// Optical density A > 0 of the pigment at its peak: the absorptance is 1 − 10^(−A·a), broader
+    /// Optical density A of the pigment at its peak, above 0 and at most [`DyeModel::MOST_DENSE`]: the absorptance is 1 − 10^(−A·a), broader
     /// and steeper than the curve a of a thin solution. `None` (default) is a itself.
     pub optical_density: Option<f64>,
 }
@@ -68,17 +68,21 @@ pub struct DyeCurves {
 }
 
 impl DyeModel {
+    /// The greatest optical density. A pigment of 6 is opaque at its peak. From a thousand on, its absorption has edges
+    /// that sums over 5 nm do not resolve, so that `upglow-fit`'s `verify` finds other colors at every nanometer.
+    pub const MOST_DENSE: f64 = 100.0;
+
     /// The dyes of `set` under `options`.
     ///
     /// # Errors
     ///
-    /// [`ModelError`] if the quantum yield is not in 0..=1 or the optical density not above 0.
+    /// [`ModelError`] if the quantum yield is not in 0..=1 or the optical density out of range.
     pub fn new(set: DyeSet, options: DyeOptions) -> Result<Self, ModelError> {
         if let QuantumYield::Fixed(q) = options.quantum_yield {
             check_yield(q)?;
         }
         if let Some(found) = options.optical_density
-            && !(found > 0.0 && found.is_finite())
+            && !(found > 0.0 && found <= Self::MOST_DENSE)
         {
             return Err(ModelError::OpticalDensity { found });
         }
@@ -230,7 +234,7 @@ mod tests {
         let set = || DyeSet::named("konig8").unwrap();
         let with = |options| DyeModel::new(set(), options).unwrap_err().to_string();
         let density = DyeOptions { optical_density: Some(-1.0), ..DyeOptions::default() };
-        assert_eq!(with(density), "optical density -1, expected > 0");
+        assert_eq!(with(density), "optical density -1, expected > 0 and at most 100");
         let quantum_yield = QuantumYield::Fixed(1.5);
         let bright = DyeOptions { quantum_yield, ..DyeOptions::default() };
         assert_eq!(with(bright), "quantum yield 1.5, expected 0 to 1");

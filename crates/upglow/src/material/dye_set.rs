@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use upglow_color::rounding::shown;
 use upglow_color::{
     Grid, MeasuredDye, NameError, Observer, SampleRules, SamplesError, Spectrum, SpectrumCsvError,
     Xyz, read_columns,
@@ -261,9 +262,10 @@ fn check_curve(
     let mut sampled = samples.grid().wavelengths_nm().zip(samples.values());
     let peak = samples.peak();
     let problem = match sampled.find(|(_, sample)| **sample < 0.0) {
-        Some((nm, found)) => format!("is {found} at {nm} nm, expected 0 or more"),
+        Some((nm, found)) => format!("is {} at {nm} nm, expected 0 or more", shown(*found)),
         None if peak > 0.0 && peak <= limit => return Ok(()),
         None if peak > limit => {
+            let peak = shown(peak);
             format!("peaks at {peak}, expected a peak in 0..1, 0 excluded, or a normalized curve")
         }
         None => format!("peaks at {peak}, expected a peak in 0..1, 0 excluded"),

@@ -1,5 +1,7 @@
 //! Why a model of fluorescence cannot be made.
 
+use crate::material::dye_model::DyeModel;
+
 /// Why a model cannot be made.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -10,8 +12,8 @@ pub enum ModelError {
         /// The number given.
         found: f64,
     },
-    /// The optical density is not a positive number.
-    #[error("optical density {found}, expected > 0")]
+    /// The optical density is not above 0, or too great.
+    #[error("optical density {found}, expected > 0 and at most {most}", most = DyeModel::MOST_DENSE)]
     OpticalDensity {
         /// The number given.
         found: f64,

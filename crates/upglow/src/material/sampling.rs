@@ -68,10 +68,8 @@ impl<L: Copy> Shares<L> {
         draw: impl Fn(L, f64) -> Shifted,
     ) -> Option<Sample<f64>> {
         let whole = self.total();
-        if whole <= 0.0 {
-            return None;
-        }
-        Some(match self.choose(choice) {
+        // Not for NaN either.
+        (whole > 0.0).then(|| match self.choose(choice) {
             None => {
                 let draw = Draw::Elastic { probability: self.elastic / whole };
                 Sample { nm: known_nm, throughput: whole, draw }

@@ -4,7 +4,7 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Simd, dispatch, f32x4, f32x8, i32x4};
 use upglow_color::rounding::to_single;
 
-use crate::bispectral::{Bispectral, Sample};
+use crate::bispectral::{Bispectral, FARTHEST_NM, Sample};
 use crate::material::formula::{Accounting, Film, Mixing, PerLobe};
 use crate::material::model::Model;
 use crate::packed::curve_table::{DyeNumbers, PairedCurves, Rows};
@@ -16,8 +16,7 @@ use crate::packed::vector::{greater_of, load, sum, sums, transposed, whole, with
 
 /// The four materials around a color, mixed by weight: a [`crate::Mixture`] for inner loops.
 ///
-/// Every result is within 1e-5 of the mixture's at wavelengths from 0 to 10 000 nm; farther out it
-/// is that of the nearer end. No wavelength panics. Nothing is allocated, and a look-up, an
+/// Every result is within 1e-5 of the mixture's. Nothing is allocated, and a look-up, an
 /// evaluation or a draw takes tens of nanoseconds at most.
 #[must_use]
 #[derive(Clone, Copy, Debug)]
@@ -35,9 +34,6 @@ pub struct PackedMixture<'t> {
     /// [`PackedFilm`] or [`PackedBells`].
     fluorescence: [[f32; 4]; 4],
 }
-
-/// Wavelengths are clamped to this, nm: beyond it, parabolas overflow.
-const FARTHEST_NM: f32 = 1e4;
 
 /// Runs code with the widest instructions of this processor. Functions called inside must be
 /// inlined, or they are compiled for the baseline: closures, and so `map` of an array, often are not.
@@ -119,7 +115,7 @@ impl<'t> PackedMixture<'t> {
         let root = twice_inverse_root(simd, x.mul_add(x, f32x4::splat(simd, 1.0)));
         let shown = (0.25 * x).mul_add(root, f32x4::splat(simd, 0.5));
         let passed = f32x4::splat(simd, 1.0) - (one + two);
-        sum(weights * passed * shown).max(0.0)
+        at(lambda_nm, sum(weights * passed * shown).clamp(0.0, 1.0))
     }
 
     /// [`Bispectral::reflectance`] at four wavelengths, nm.
@@ -150,7 +146,7 @@ impl<'t> PackedMixture<'t> {
     fn passive_four(&self, lambda_nm: &[f32; 4]) -> [f32; 4] {
         in_vectors!(self, simd => {
             let [a, b, c, d] = self.shown_by_all(simd, lambda_nm);
-            sums([a, b, c, d]).max(0.0).into()
+            at_four(simd, lambda_nm, sums([a, b, c, d])).into()
         })
     }
 
@@ -159,7 +155,7 @@ impl<'t> PackedMixture<'t> {
             let [a, b, c, d] = self.shown_by_all(simd, lambda_nm);
             let passed = self.passed(simd, within_range(f32x4::from_slice(simd, lambda_nm)));
             let [e, f, g, h] = transposed(passed);
-            sums([a * e, b * f, c * g, d * h]).max(0.0).into()
+            at_four(simd, lambda_nm, sums([a * e, b * f, c * g, d * h])).into()
         })
     }
 
@@ -172,21 +168,21 @@ impl<'t> PackedMixture<'t> {
             for i in 0..4 {
                 total += shown(simd, nm, self.corner(simd, i));
             }
-            total.max(0.0).into()
+            at_eight(simd, low_nm, high_nm, total).into()
         })
     }
 
     fn fluorescent_eight(&self, low_nm: &[f32; 4], high_nm: &[f32; 4]) -> [f32; 8] {
         in_vectors!(self, simd => {
-            let low_nm = within_range(f32x4::from_slice(simd, low_nm));
-            let high_nm = within_range(f32x4::from_slice(simd, high_nm));
-            let (low, high) = (self.passed(simd, low_nm), self.passed(simd, high_nm));
-            let nm = low_nm.combine(high_nm);
+            let within_low = within_range(f32x4::from_slice(simd, low_nm));
+            let within_high = within_range(f32x4::from_slice(simd, high_nm));
+            let (low, high) = (self.passed(simd, within_low), self.passed(simd, within_high));
+            let nm = within_low.combine(within_high);
             let mut total = f32x8::splat(simd, 0.0);
             for i in 0..4 {
                 total += low[i].combine(high[i]) * shown(simd, nm, self.corner(simd, i));
             }
-            total.max(0.0).into()
+            at_eight(simd, low_nm, high_nm, total).into()
         })
     }
 
@@ -356,7 +352,7 @@ impl<'t> PackedMixture<'t> {
         in_nm: f32,
         [one, two]: PerLobe<f32x4<S>>,
     ) -> PerLobe<f32x4<S>> {
-        let (none, nm) = (f32x4::splat(simd, 0.0), f32x4::splat(simd, in_nm));
+        let (none, nm) = (f32x4::splat(simd, 0.0), within_range(f32x4::splat(simd, in_nm)));
         if !self.fluorescent {
             return [none; 2];
         }
@@ -586,11 +582,17 @@ impl Bispectral for PackedMixture<'_> {
     #[inline]
     fn reradiation_per_nm(&self, in_nm: f32, out_nm: f32) -> f32 {
         if !self.fluorescent {
-            return 0.0;
+            return at(in_nm, at(out_nm, 0.0));
         }
-        with_rules!(self, simd, rule => {
-            self.moved(simd, self.returned(simd, rule, in_nm), self.emission(simd, rule, out_nm))
-        })
+        at(
+            in_nm,
+            at(
+                out_nm,
+                with_rules!(self, simd, rule => {
+                    self.moved(simd, self.returned(simd, rule, in_nm), self.emission(simd, rule, out_nm))
+                }),
+            ),
+        )
     }
 
     #[inline]
@@ -599,7 +601,9 @@ impl Bispectral for PackedMixture<'_> {
             let absorbed = self.absorbed(simd, rule, in_nm);
             let [one, two] = self.returned_of(simd, rule, in_nm, absorbed);
             let weights = load(simd, &self.weights);
-            self.reflectance_through(simd, in_nm, absorbed) + sum(weights * (one + two))
+            let reflectance = self.reflectance_through(simd, in_nm, absorbed);
+            // One number rounded up can exceed 1.
+            (reflectance + sum(weights * (one + two))).clamp(0.0, 1.0)
         })
     }
 
@@ -628,56 +632,75 @@ impl Bispectral for PackedMixture<'_> {
     #[inline]
     fn incident_pdf_per_nm(&self, in_nm: f32, out_nm: f32) -> f32 {
         if !self.fluorescent {
-            return 0.0;
+            return at(in_nm, at(out_nm, 0.0));
         }
-        with_rules!(self, simd, rule => {
-            let emission = self.emission(simd, rule, out_nm);
-            let drawn = self.moved(simd, self.proposed(simd, rule, in_nm), emission);
-            ratio(drawn, self.leaving(simd, rule, out_nm, emission).total())
-        })
+        at(
+            in_nm,
+            at(
+                out_nm,
+                with_rules!(self, simd, rule => {
+                    let emission = self.emission(simd, rule, out_nm);
+                    let drawn = self.moved(simd, self.proposed(simd, rule, in_nm), emission);
+                    ratio(drawn, self.leaving(simd, rule, out_nm, emission).total())
+                }),
+            ),
+        )
     }
 
     #[inline]
     fn incident_elastic_probability(&self, out_nm: f32) -> f32 {
-        with_rules!(self, simd, rule => {
-            let shares = self.leaving(simd, rule, out_nm, self.emission(simd, rule, out_nm));
-            ratio(shares.elastic, shares.total())
-        })
+        at(
+            out_nm,
+            with_rules!(self, simd, rule => {
+                let shares = self.leaving(simd, rule, out_nm, self.emission(simd, rule, out_nm));
+                ratio(shares.elastic, shares.total())
+            }),
+        )
     }
 
     #[inline]
     fn sample_outgoing(&self, in_nm: f32, u: [f32; 2]) -> Option<Sample<f32>> {
         with_rules!(self, simd, rule => {
             let (returned, shares) = self.arriving(simd, rule, in_nm);
-            let throughput = shares.total();
-            Some(match shares.choose(rule.lobes(), throughput, u[0])? {
-                None => elastic(in_nm, shares.elastic, throughput),
+            let total = shares.total();
+            let sample = match shares.choose(rule.lobes(), total, u[0])? {
+                None => elastic(in_nm, shares.elastic, total),
                 Some(lobe) => {
                     let out_nm = self.chosen(lobe).draw_emitted(simd, u[1]);
                     let moved = self.moved(simd, returned, self.emission(simd, rule, out_nm));
-                    shifted(out_nm, moved, throughput)
+                    shifted(out_nm, moved, total)
                 }
-            })
+            };
+            Some(Sample { throughput: total.clamp(0.0, 1.0), ..sample })
         })
     }
 
     #[inline]
     fn outgoing_pdf_per_nm(&self, in_nm: f32, out_nm: f32) -> f32 {
         if !self.fluorescent {
-            return 0.0;
+            return at(in_nm, at(out_nm, 0.0));
         }
-        with_rules!(self, simd, rule => {
-            let (returned, shares) = self.arriving(simd, rule, in_nm);
-            ratio(self.moved(simd, returned, self.emission(simd, rule, out_nm)), shares.total())
-        })
+        at(
+            in_nm,
+            at(
+                out_nm,
+                with_rules!(self, simd, rule => {
+                    let (returned, shares) = self.arriving(simd, rule, in_nm);
+                    ratio(self.moved(simd, returned, self.emission(simd, rule, out_nm)), shares.total())
+                }),
+            ),
+        )
     }
 
     #[inline]
     fn outgoing_elastic_probability(&self, in_nm: f32) -> f32 {
-        with_rules!(self, simd, rule => {
-            let (_, shares) = self.arriving(simd, rule, in_nm);
-            ratio(shares.elastic, shares.total())
-        })
+        at(
+            in_nm,
+            with_rules!(self, simd, rule => {
+                let (_, shares) = self.arriving(simd, rule, in_nm);
+                ratio(shares.elastic, shares.total())
+            }),
+        )
     }
 }
 
@@ -696,6 +719,26 @@ fn within_range<S: Simd>(nm: f32x4<S>) -> f32x4<S> {
     nm.max(0.0).min(FARTHEST_NM)
 }
 
+/// The value at a wavelength, nm; NaN if that is NaN.
+#[inline(always)]
+fn at(nm: f32, value: f32) -> f32 {
+    if nm.is_nan() { f32::NAN } else { value }
+}
+
+/// [`at`] of four shares.
+#[inline(always)]
+fn at_four<S: Simd>(simd: S, nm: &[f32; 4], shares: f32x4<S>) -> f32x4<S> {
+    let nm = f32x4::from_slice(simd, nm);
+    nm.simd_eq(nm).select(shares.max(0.0).min(1.0), f32x4::splat(simd, f32::NAN))
+}
+
+/// [`at`] of eight shares.
+#[inline(always)]
+fn at_eight<S: Simd>(simd: S, low_nm: &[f32; 4], high_nm: &[f32; 4], shares: f32x8<S>) -> f32x8<S> {
+    let nm = f32x4::from_slice(simd, low_nm).combine(f32x4::from_slice(simd, high_nm));
+    nm.simd_eq(nm).select(shares.max(0.0).min(1.0), f32x8::splat(simd, f32::NAN))
+}
+
 /// Weight times reflectance where nothing is absorbed, from weight, edge (nm) and the coefficients
 /// of 1, d and d².
 #[inline(always)]
@@ -708,4 +751,163 @@ fn shown<S: Simd>(
     let x = d.mul_add(d.mul_add(quadratic, linear), constant);
     let root = twice_inverse_root8(simd, x.mul_add(x, f32x8::splat(simd, 1.0)));
     weight * (0.25 * x).mul_add(root, f32x8::splat(simd, 0.5))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::{Random, models};
+    use crate::{
+        AnalyticModel, Cube, DyeModel, DyeOptions, DyeSet, Edge, FilmModel, FitRecord,
+        Fluorescence, Interpolation, Node, QuantumYield,
+    };
+    use upglow_color::{Contract, LinearRgb};
+
+    fn cube(model: Model, node: impl FnMut(usize) -> Node) -> Cube {
+        let nodes = (0..27).map(node).collect();
+        Cube::new(Contract::default(), model, FitRecord::default(), 3, nodes).expect("in range")
+    }
+
+    fn rgb(random: &mut Random) -> [f32; 3] {
+        [random.unit(), random.unit(), random.unit()].map(to_single)
+    }
+
+    /// Every number that a mixture tells of these wavelengths, and of both samplers whether they draw.
+    fn answers<M: Bispectral>(mixture: &M, known: M::Real, other: M::Real) -> [f64; 8]
+    where
+        f64: From<M::Real>,
+    {
+        let half = other;
+        let draws = |drawn: bool| if drawn { 1.0 } else { 0.0 };
+        [
+            mixture.reflectance(known).into(),
+            mixture.albedo(known).into(),
+            mixture.reradiation_per_nm(known, other).into(),
+            mixture.reradiation_per_nm(other, known).into(),
+            mixture.incident_elastic_probability(known).into(),
+            mixture.outgoing_elastic_probability(known).into(),
+            draws(mixture.sample_incident(known, [half; 2]).is_some()),
+            draws(mixture.sample_outgoing(known, [half; 2]).is_some()),
+        ]
+    }
+
+    #[test]
+    fn single_and_double_precision_answer_alike_for_odd_wavelengths() {
+        // What is promised of all results.
+        const SINGLE: f64 = 1e-5;
+        let odd = [
+            f32::NAN,
+            f32::INFINITY,
+            f32::NEG_INFINITY,
+            f32::MAX,
+            f32::MIN,
+            f32::MIN_POSITIVE,
+            -1.0,
+            -0.0,
+            299.5,
+            830.5,
+            FARTHEST_NM,
+            1e5,
+        ];
+        for (seed, model) in (0..).zip(models()) {
+            let mut random = Random::new(seed);
+            let cube = cube(model.clone(), |_| random.node(&model));
+            let table = cube.lookup_table();
+            for nm in odd {
+                let color = rgb(&mut random);
+                let single = table.lookup(color).unwrap();
+                let wide = LinearRgb(color.map(f64::from));
+                let double = cube.lookup(wide, Interpolation::Blend).unwrap();
+                let found = answers(&single, nm, 0.5);
+                let expected = answers(&double, nm.into(), 0.5);
+                for (i, (found, expected_one)) in found.into_iter().zip(expected).enumerate() {
+                    let same = found == expected_one || found.is_nan() && expected_one.is_nan();
+                    // Probabilities, and whether there is a draw, are of what leaves: of nearly nothing
+                    // they may differ.
+                    let of = if i < 4 { 1.0 } else { expected[0] };
+                    let off = (found - expected_one).abs() * of;
+                    assert!(same || off < SINGLE, "{nm}, {i}: {found} {expected_one}");
+                }
+                let shares = found[..6].iter();
+                assert!(!nm.is_nan() || shares.clone().all(|share| share.is_nan()), "{found:?}");
+                assert!(nm.is_nan() || shares.clone().all(|share| share.is_finite()), "{found:?}");
+                let mut many = [[0.0; 8], [1.0; 8]];
+                many[0] = single.reflectance8([nm; 8]);
+                many[1][..4].copy_from_slice(&single.reflectance4([nm; 4]));
+                let off = |found: f32| f64::from(found) - expected[0];
+                let alike = |found: f32| match nm.is_nan() {
+                    true => found.is_nan(),
+                    false => off(found).abs() < SINGLE,
+                };
+                assert!(
+                    many[0].into_iter().chain(many[1][..4].to_vec()).all(alike),
+                    "{nm}: {many:?}"
+                );
+                let (mut wide, mut narrow) = ([0.0], [0.0]);
+                double.reflectances(&[nm.into()], &mut wide);
+                single.reflectances(&[nm], &mut narrow);
+                assert!(wide[0].is_nan() == nm.is_nan() && alike(narrow[0]));
+            }
+            let far = cube.lookup(LinearRgb([0.5; 3]), Interpolation::Blend).unwrap();
+            let end = answers(&far, FARTHEST_NM.into(), 0.5);
+            assert_eq!(answers(&far, f64::MAX, 0.5), end);
+        }
+    }
+
+    #[test]
+    fn no_share_exceeds_one_by_a_bit() {
+        /// Of each of four models, several functions each time.
+        const QUESTIONS: usize = 250_000;
+        let set = || DyeSet::named("konig8").expect("built in");
+        let fixed = QuantumYield::Fixed(1.0);
+        let separate = DyeOptions { mixing: Mixing::Separate, ..DyeOptions::default() };
+        let models = [
+            Model::Film(FilmModel::new(set(), Accounting::Energy, fixed).expect("in range")),
+            Model::Dyes(DyeModel::new(set(), DyeOptions::default()).expect("in range")),
+            Model::Dyes(DyeModel::new(set(), separate).expect("in range")),
+            Model::Analytic(AnalyticModel::default()),
+        ];
+        let mut greatest = [0.0_f32; 3];
+        for (seed, model) in (0..).zip(models) {
+            let mut random = Random::new(seed);
+            let bright = Edge { edge_nm: 550.0, level: 1e9, slope_per_nm: 0.0 };
+            let node = |random: &mut Random| {
+                let node = random.node(&model);
+                let fluorescence = node.material(&model).fluorescence;
+                // Half of them give all light back, at one wavelength or another.
+                if random.below(2) == 0 { Node::new(bright, fluorescence, 0.0) } else { node }
+            };
+            for _ in 0..QUESTIONS / 250 {
+                let table = cube(model.clone(), |_| node(&mut random)).lookup_table();
+                for _ in 0..50 {
+                    let mixture = table.lookup(rgb(&mut random)).unwrap();
+                    for _ in 0..5 {
+                        let nm = to_single(random.between(290.0, 840.0));
+                        let u = [to_single(random.unit()).min(0.99), 0.5];
+                        let drawn = mixture.sample_outgoing(nm, u).map_or(0.0, |s| s.throughput);
+                        let shares = [mixture.reflectance(nm), mixture.albedo(nm), drawn];
+                        assert!(shares.iter().all(|s| (0.0..=1.0).contains(s)), "{nm}: {shares:?}");
+                        for (most, share) in greatest.iter_mut().zip(shares) {
+                            *most = most.max(share);
+                        }
+                        let four = mixture.reflectance4([nm; 4]);
+                        assert!(four.iter().all(|s| (0.0..=1.0).contains(s)), "{nm}: {four:?}");
+                    }
+                }
+            }
+        }
+        // The bound is reached.
+        assert_eq!(greatest, [1.0; 3]);
+    }
+
+    #[test]
+    fn a_dark_mixture_has_no_density() {
+        let edge = Edge { edge_nm: 550.0, level: 0.0, slope_per_nm: 0.01 };
+        let dark = Node::new(edge, Fluorescence::None, 0.0);
+        let table = cube(Model::Reflectance, |_| dark).lookup_table();
+        let mixture = table.lookup([0.5; 3]).unwrap();
+        assert_eq!(mixture.reradiation_per_nm(400.0, 500.0), 0.0);
+        assert!(mixture.reradiation_per_nm(f32::NAN, 500.0).is_nan());
+        assert!(mixture.incident_pdf_per_nm(400.0, f32::NAN).is_nan());
+    }
 }

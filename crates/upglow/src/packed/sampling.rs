@@ -155,11 +155,9 @@ impl<S: Simd> Shares<f32x4<S>> {
         throughput: f32,
         u: f32,
     ) -> Option<Option<ChosenLobe>> {
-        if throughput <= 0.0 {
-            return None;
-        }
         let rest = u * throughput - self.elastic;
-        Some(if rest < 0.0 { None } else { self.choose_lobe(lobes, rest) })
+        // Not for NaN either.
+        (throughput > 0.0).then(|| if rest < 0.0 { None } else { self.choose_lobe(lobes, rest) })
     }
 
     /// The lobe that `rest` falls on, or the last one that contributes. Counted without branches,
