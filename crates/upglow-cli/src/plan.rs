@@ -173,8 +173,7 @@ pub(crate) fn refuse_ignored<T: Choice + PartialEq>(
 ) -> Result<(), Failure> {
     let ignored = |(_, given, choices): &&(&str, bool, &[T])| *given && !choices.contains(&chosen);
     let Some((option, _, choices)) = options.iter().find(ignored) else { return Ok(()) };
-    let names: Vec<&str> = choices.iter().map(|choice| choice.name()).collect();
-    let (found, expected) = (chosen.name(), names.join(" or "));
+    let (found, expected) = (chosen.name(), T::words(choices));
     let message = format!("given with {chooser} {found}, expected {chooser} {expected}");
     Err(Failure::option(option, message))
 }

@@ -295,7 +295,7 @@ fn command_lines_that_do_not_fit() {
         ),
         (
             "build --model reflectance --accounting photon -o x",
-            "--accounting: given with --model reflectance, expected --model film or dyes or analytic",
+            "--accounting: given with --model reflectance, expected --model film, dyes or analytic",
         ),
         (
             "build --preset konig2020 --emission-fwhm-nm 30 -o x",

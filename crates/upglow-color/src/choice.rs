@@ -41,7 +41,12 @@ pub trait Choice: Copy + 'static {
 
     /// The known words, without former ones: "a, b or c".
     fn known_words() -> String {
-        alternatives(Self::ALL.iter().map(|value| value.name()))
+        Self::words(Self::ALL)
+    }
+
+    /// The words of some values: "a, b or c".
+    fn words(values: &[Self]) -> String {
+        alternatives(values.iter().map(|value| value.name()))
     }
 }
 
