@@ -21,18 +21,47 @@ pub(crate) struct Args {
 #[derive(Clone, Debug, Subcommand)]
 pub(crate) enum Command {
     /// Compute and draw the eight figures of the paper and two of our own; takes minutes
+    #[command(after_help = usage::FIGURES)]
     Figures(FiguresArgs),
     /// Measure the claims of the paper and print a Markdown report; takes minutes
+    #[command(after_help = usage::REPRODUCE)]
     Reproduce(ReproduceArgs),
     /// Measure how materials made from the color of real surfaces look under other lights, beside the surfaces;
     /// takes minutes
+    #[command(after_help = usage::RELIGHT)]
     Relight(RelightArgs),
     /// Measure how near 4×4 matrices, for engines without spectra, come to measured fluorescent materials under
     /// other lights
+    #[command(after_help = usage::REDUCED)]
     Reduced(ReducedArgs),
     /// Measure which colors get a dye by the rule of choosing, and how much more than the least; takes
     /// minutes
+    #[command(after_help = usage::RULE)]
     Rule(RuleArgs),
+}
+
+/// Examples of each command, which its help ends with.
+mod usage {
+    pub(super) const FIGURES: &str = "\
+Examples:
+  upglow-study figures -o figures
+  upglow-study figures --only 4 --resolution 16 -o figures";
+
+    pub(super) const REPRODUCE: &str = "\
+Examples:
+  upglow-study reproduce -o report.md";
+
+    pub(super) const RELIGHT: &str = "\
+Examples:
+  upglow-study relight --only natural --only konig2020";
+
+    pub(super) const REDUCED: &str = "\
+Examples:
+  upglow-study reduced --bispectral measured";
+
+    pub(super) const RULE: &str = "\
+Examples:
+  upglow-study rule --resolution 16 --nodes 100";
 }
 
 #[derive(Clone, Debug, clap::Args)]
@@ -120,5 +149,18 @@ mod tests {
     #[test]
     fn the_arguments_fit_together() {
         Args::command().debug_assert();
+    }
+
+    #[test]
+    fn every_help_ends_with_examples_that_the_program_accepts() {
+        for command in Args::command().get_subcommands() {
+            let text = command.get_after_help().map(ToString::to_string).unwrap_or_default();
+            let lines: Vec<&str> = text.lines().skip(1).map(str::trim).collect();
+            assert!(!lines.is_empty(), "{} has no example", command.get_name());
+            for line in lines {
+                let read = Args::try_parse_from(line.split(' '));
+                assert!(read.is_ok(), "{line}: {}", read.unwrap_err());
+            }
+        }
     }
 }
