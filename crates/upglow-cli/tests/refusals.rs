@@ -251,7 +251,7 @@ fn command_lines_that_do_not_fit() {
         ),
         (
             "build --preset jakob2019 --slope-under-dyes-per-nm 0.01 -o x",
-            "--slope-under-dyes-per-nm: given with --model reflectance, expected --model film or",
+            "--slope-under-dyes-per-nm: given with --model reflectance, expected --model film,",
         ),
         (
             "build --slope-limits soft -o x",
