@@ -6,6 +6,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
+use upglow::open_input;
 use upglow_image::SUFFIXES;
 use upglow_terminal::Failure;
 
@@ -111,13 +112,7 @@ pub(crate) fn find(inputs: &[PathBuf], depth: Depth) -> Result<Inputs, Failure> 
 
 /// Checks that a file can be read, before work on others starts.
 pub(crate) fn check_there(path: &Path, expected: &str) -> Result<(), Failure> {
-    match std::fs::File::open(path) {
-        Ok(_) if path.is_dir() => {
-            Err(Failure::file(path, format!("a folder, expected {expected}")))
-        }
-        Ok(_) => Ok(()),
-        Err(error) => Err(Failure::system(path, &error, expected)),
-    }
+    open_input(path).map(drop).map_err(|error| Failure::system(path, &error, expected))
 }
 
 /// Adds the pictures of a folder, or of one inside it.

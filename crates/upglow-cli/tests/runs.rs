@@ -6,15 +6,41 @@ use support::Folder;
 
 #[test]
 fn the_number_of_threads_does_not_change_a_byte() {
-    for model in ["dyes", "analytic", "reflectance"] {
+    for model in ["film", "dyes", "analytic", "reflectance"] {
         let folder = Folder::new();
-        for threads in ["1", "2", "5"] {
+        for threads in ["1", "2", "3", "7"] {
             folder.done(&format!(
                 "build --resolution 5 --model {model} --threads {threads} -o {threads}"
             ));
+            assert_eq!(folder.read("1"), folder.read(threads), "{model} {threads}");
         }
-        assert_eq!(folder.read("1"), folder.read("2"), "{model}");
-        assert_eq!(folder.read("1"), folder.read("5"), "{model}");
+    }
+}
+
+#[test]
+fn the_number_of_threads_does_not_change_a_byte_of_a_baked_file() {
+    let folder = Folder::new();
+    folder.done("build --space srgb --resolution 5 -o cube.safetensors");
+    let mut picture = vec![0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 70, 0, 90, 0, 24, 0x20];
+    picture.extend((0..90_u8).flat_map(|y| (0..70).flat_map(move |x| [x * 3, y * 2, x + y])));
+    folder.write("in.tga", picture);
+    for (form, ending) in [
+        ("--as material", "exr"),
+        ("--as material --fast --format tx", "tx"),
+        ("--as spectral --bands 400:700:50", "exr"),
+        ("--as radiance --light A --format png", "png"),
+    ] {
+        let baked = |threads: u32| {
+            folder.done(&format!(
+                "bake cube.safetensors in.tga -o {threads}.{ending} --threads {threads} \
+                 --space srgb --encoding srgb {form}"
+            ));
+            folder.read(&format!("{threads}.{ending}"))
+        };
+        let first = baked(1);
+        for threads in [2, 3, 7] {
+            assert!(baked(threads) == first, "{form} {threads}");
+        }
     }
 }
 

@@ -135,8 +135,8 @@ pub enum DonaldsonError {
 /// No material gives back ten times the light that arrives in a band; more is a damaged file.
 const MOST: f64 = 10.0;
 
-/// Smallest and greatest number of wavelengths of an axis: every nanometer of the range of measurement.
-const AXIS_LENGTHS: [usize; 2] = [2, 1001];
+/// Smallest and greatest number of wavelengths of an axis.
+const AXIS_LENGTHS: [usize; 2] = [2, DonaldsonMatrix::MOST_WAVELENGTHS];
 
 /// Range of wavelengths, nm: beyond it, numbers are probably in another unit.
 const AXIS_RANGE_NM: [f64; 2] = [100.0, 3000.0];
@@ -149,6 +149,9 @@ const VISIBLE_NM: [f64; 2] = [400.0, 700.0];
 const NOISE_BANDS: f64 = 1.5;
 
 impl DonaldsonMatrix {
+    /// Most wavelengths of an axis: every nanometer of the range of measurement.
+    pub const MOST_WAVELENGTHS: usize = 1001;
+
     /// A matrix from its values `[outgoing][incident]` at ascending wavelengths, nm. Where light leaves in
     /// the band in which it arrived, they hold reflected and re-emitted light together.
     ///

@@ -22,10 +22,10 @@ mod tests;
 mod tga;
 mod tiff;
 
-use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
+use upglow::open_input;
 use upglow_color::RgbSpace;
 
 use self::band::Band;
@@ -63,7 +63,8 @@ pub const SUFFIXES: [&str; 10] =
 ///
 /// A band takes 12 bytes per pixel, 16 with alpha, and as much again while it is decompressed: 32 MiB for
 /// 64 rows of 16,384 columns. Files in tiles or blocks of rows take one more row of those. JPEG, interlaced
-/// PNG and pictures that are not stored upright are decompressed whole, and refused above 1 GiB.
+/// PNG and pictures that are not stored upright are decompressed whole, and refused above 1 GiB; so are rows of tiles
+/// above 1 GiB, unless tiles of OpenEXR have at most 64 rows.
 #[derive(Debug)]
 pub struct Picture {
     source: Box<dyn Source>,
@@ -90,7 +91,7 @@ impl Picture {
     /// As [`Picture::open`].
     pub fn open_as(path: &Path, declared: &Declared) -> Result<Self, PictureError> {
         let mut found = Vec::new();
-        File::open(path)?.take(4).read_to_end(&mut found)?;
+        open_input(path)?.take(4).read_to_end(&mut found)?;
         let layer = declared.layer.as_deref();
         let is_exr = found == [0x76, 0x2f, 0x31, 0x01];
         let (source, mut facts): (Box<dyn Source>, Facts) = match found[..] {

@@ -271,3 +271,41 @@ fn a_table_that_the_file_cannot_hold_is_refused_before_it_is_read() {
     let message = check(&path, "stretched", &bytes).unwrap_err();
     assert!(message.starts_with("the file ends inside the table of 6250 blocks"), "{message}");
 }
+
+#[test]
+fn a_row_of_tiles_that_would_fill_the_memory_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("x");
+    let mut bytes = exr_file(folder.path(), Compression::ZIP16, Blocks::Tiles(Vec2(16, 16)));
+    let after = |bytes: &[u8], name: &[u8], kind: usize| {
+        bytes.windows(name.len()).position(|w| w == name).unwrap() + name.len() + 1 + kind + 1 + 4
+    };
+    let at = after(&bytes, b"dataWindow", "box2i".len());
+    bytes[at + 8..at + 12].copy_from_slice(&131_071_i32.to_le_bytes());
+    bytes[at + 12..at + 16].copy_from_slice(&16_383_i32.to_le_bytes());
+    let at = after(&bytes, b"tiles", "tiledesc".len());
+    bytes[at..at + 4].copy_from_slice(&1024_u32.to_le_bytes());
+    bytes[at + 4..at + 8].copy_from_slice(&16_384_u32.to_le_bytes());
+    let name = bytes.windows(10).position(|w| w == b"chunkCount").unwrap();
+    bytes[name] = b'C';
+    let message = check(&path, "tall tiles", &bytes).unwrap_err();
+    assert!(message.starts_with("a row of tiles takes "), "{message}");
+}
+
+/// What is no file of an end has no content that could be waited for.
+#[cfg(unix)]
+#[test]
+fn pipes_and_devices_are_refused_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let pipe = folder.path().join("pipe.exr");
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    for path in [&pipe, Path::new("/dev/zero"), Path::new("/dev/urandom")] {
+        for error in [
+            Picture::open(path).unwrap_err().to_string(),
+            Lint::of_file(path).unwrap_err().to_string(),
+            SpectralPicture::open(path).unwrap_err().to_string(),
+        ] {
+            assert_eq!(error, "a device, pipe or socket", "{}", path.display());
+        }
+    }
+}

@@ -83,7 +83,7 @@ impl Failure {
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Input(line) | Self::Usage(line) => f.write_str(&one_line(line)),
+            Self::Input(line) | Self::Usage(line) => f.write_str(&shortened(one_line(line))),
             Self::Stopped => f.write_str("stopped, nothing was written"),
             Self::OutputClosed => f.write_str("the reader of the output has closed it"),
         }
@@ -155,6 +155,21 @@ pub(crate) fn usage_line(error: &clap::Error) -> String {
     joined.trim_start_matches("error: ").replace(" tip: ", "; tip: ")
 }
 
+/// Keeps the start and the end of a long line: what is wrong is at the start, what to do at the end.
+fn shortened(line: String) -> String {
+    let length = line.chars().count();
+    if length <= MOST_CHARACTERS {
+        return line;
+    }
+    let start = line.chars().take(MOST_CHARACTERS - END_CHARACTERS);
+    start.chain(['…']).chain(line.chars().skip(length - END_CHARACTERS)).collect()
+}
+
+/// Most characters of an error: a path of several folders, a list of names and what is expected.
+const MOST_CHARACTERS: usize = 1000;
+/// Of which so many are those of its end.
+const END_CHARACTERS: usize = 300;
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -165,6 +180,16 @@ mod tests {
         assert_eq!(io_message(&error), "a folder");
         let error = io::Error::other("Strange thing (os error 999)");
         assert_eq!(io_message(&error), "strange thing");
+    }
+
+    #[test]
+    fn a_long_message_keeps_its_start_and_its_end() {
+        let failure = Failure::Input(format!("a.csv: {}, expected x", "é".repeat(100_000)));
+        let line = failure.to_string();
+        assert_eq!(line.chars().count(), MOST_CHARACTERS + 1);
+        assert!(line.starts_with("a.csv: ééé") && line.ends_with("é, expected x"), "{line}");
+        let short = Failure::Usage("x".repeat(MOST_CHARACTERS));
+        assert_eq!(short.to_string().len(), MOST_CHARACTERS);
     }
 
     #[test]

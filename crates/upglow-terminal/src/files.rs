@@ -1,29 +1,16 @@
 //! Files that the programs read and write.
 
-use std::fs::File;
-use std::io::{self, ErrorKind, Read as _};
+use std::io::{self, ErrorKind};
 use std::path::Path;
 
-use upglow::Aside;
+use upglow::{Aside, read_text_input};
 
 use crate::failure::Failure;
-use crate::output::{keep_for_data, size};
-
-/// The greatest text file that is read: a hundred times what a measured light takes, and a list of 100,000
-/// colors with as many digits as there are.
-const MOST_TEXT_BYTES: u64 = 32 << 20;
+use crate::output::keep_for_data;
 
 /// Reads a text file; `expected` says in errors what it should be.
 pub fn read_text(path: &Path, expected: &str) -> Result<String, Failure> {
-    let failed = |error| Failure::system(path, &error, expected);
-    let mut text = String::new();
-    let mut file = File::open(path).map_err(failed)?.take(MOST_TEXT_BYTES + 1);
-    file.read_to_string(&mut text).map_err(failed)?;
-    if text.len() as u64 > MOST_TEXT_BYTES {
-        let most = size(MOST_TEXT_BYTES);
-        return Err(Failure::file(path, format!("more than {most}, expected {expected}")));
-    }
-    Ok(text)
+    read_text_input(path).map_err(|error| Failure::system(path, &error, expected))
 }
 
 /// Checks that a file can be written at `path`, before long work starts.
@@ -121,15 +108,6 @@ mod tests {
         let line = "a.pdf: a name that ends in .pdf, expected one that ends in .html or .htm";
         assert_eq!(check("a.pdf"), Err(Failure::Input(line.into())));
         assert!(check("page.").is_err());
-    }
-
-    #[test]
-    fn a_text_file_that_is_too_large_is_refused() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("large.csv");
-        File::create(&path).unwrap().set_len(MOST_TEXT_BYTES + 1).unwrap();
-        let line = format!("{}: more than 33.55 MB, expected a light", path.display());
-        assert_eq!(read_text(&path, "a light"), Err(Failure::Input(line)));
     }
 
     #[test]

@@ -37,6 +37,7 @@
 mod aside;
 mod bispectral;
 mod cube;
+mod input;
 mod material;
 mod packed;
 #[cfg(test)]
@@ -51,6 +52,7 @@ pub use cube::error::{CubeFileError, ReadCubeError};
 pub use cube::header::CubeCurves;
 pub use cube::interpolation::Interpolation;
 pub use cube::{Cube, CubeError, FitRecord, FitRecordError, LookupError, Node, NodeError};
+pub use input::{open_input, read_input, read_text_input};
 pub use material::analytic_model::AnalyticModel;
 pub use material::dye_model::{DyeCurves, DyeModel, DyeOptions, QuantumYield};
 pub use material::dye_set::{DyeSet, DyeSetError};

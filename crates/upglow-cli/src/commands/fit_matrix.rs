@@ -15,7 +15,7 @@ use super::material_report::ReflectanceReport;
 use crate::args::FitMatrixArgs;
 use crate::output::{Lines, Side, Table, triple};
 use crate::plot::matrix::{MatrixFigure, draw};
-use crate::{files, plan};
+use crate::{files, pictures, plan};
 
 const A_MATRIX: &str = "a measured matrix, .bfc, .csv or .exr";
 
@@ -105,6 +105,7 @@ fn read(args: &FitMatrixArgs) -> Result<DonaldsonMatrix, Failure> {
             DonaldsonMatrix::from_csv(&text).map_err(|error| Failure::file(path, error))
         }
         "exr" => {
+            pictures::check_there(path, "a measured matrix as OpenEXR")?;
             let unit = args.unit.map(BispectralUnit::from);
             let found =
                 SpectralPicture::open(path).and_then(|mut picture| picture.matrix(args.at, unit));

@@ -1,11 +1,10 @@
 //! `upglow inspect` for coefficient tables of any program.
 
-use std::fs::File;
 use std::io::Read as _;
 use std::path::Path;
 
 use serde::Serialize;
-use upglow::CoefficientTable;
+use upglow::{CoefficientTable, open_input, read_input};
 use upglow_color::Contract;
 use upglow_fit::round_trip;
 use upglow_terminal::{Console, Failure, Report};
@@ -36,7 +35,7 @@ struct TableReport {
 /// Whether a file starts with the magic number of coefficient tables.
 pub(super) fn is_table(path: &Path) -> bool {
     let mut start = [0; 4];
-    File::open(path).and_then(|mut file| file.read_exact(&mut start)).is_ok() && &start == b"SPEC"
+    open_input(path).and_then(|mut file| file.read_exact(&mut start)).is_ok() && &start == b"SPEC"
 }
 
 pub(super) fn run(args: InspectArgs, console: &Console) -> Result<(), Failure> {
@@ -48,7 +47,7 @@ pub(super) fn run(args: InspectArgs, console: &Console) -> Result<(), Failure> {
     let mut given = plan::lights("--illuminant", &given, &args.light)?;
     let illuminant = given.pop().unwrap_or_default();
     let contract = plan::checked(Contract { space, illuminant, ..Contract::default() })?;
-    let bytes = std::fs::read(&args.file)
+    let bytes = read_input(&args.file, CoefficientTable::MOST_BYTES)
         .map_err(|error| Failure::system(&args.file, &error, "a coefficient table"))?;
     let table = CoefficientTable::from_bytes(&bytes);
     let table = table.map_err(|error| Failure::file(&args.file, error))?;

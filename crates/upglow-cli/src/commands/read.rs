@@ -161,7 +161,11 @@ impl SpectrumReport {
     /// The share of the light at an incident wavelength that leaves at longer ones, and the wavelength
     /// at which most of it leaves.
     fn moved(&self, nm: f64) -> Option<(f32, f64)> {
-        let row = || self.spectrum.reradiation.iter().filter(|(i, _, v)| *i == nm && *v > 0.0);
+        // They are sorted by incident wavelength, and there may be as many as a file has channels.
+        let all = &self.spectrum.reradiation;
+        let first = all.partition_point(|(incident, ..)| *incident < nm);
+        let same = || all[first..].iter().take_while(|(incident, ..)| *incident == nm);
+        let row = || same().filter(|(_, _, v)| *v > 0.0);
         let most = row().max_by(|a, b| a.2.total_cmp(&b.2))?;
         Some((row().map(|(_, _, v)| v).sum(), most.1))
     }

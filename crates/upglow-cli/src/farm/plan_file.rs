@@ -9,7 +9,7 @@ use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
-use upglow::Aside;
+use upglow::{Aside, open_input};
 use upglow_image::Hash;
 use upglow_terminal::Failure;
 
@@ -127,7 +127,7 @@ const A_PLAN: &str = "a plan made by `upglow bake --plan`";
 impl PlanFile {
     pub(crate) fn open(path: &Path) -> Result<Self, Failure> {
         let failed = |error: io::Error| Failure::system(path, &error, A_PLAN);
-        let file = File::open(path).map_err(failed)?;
+        let file = open_input(path).map_err(failed)?;
         let end = file.metadata().map_err(failed)?.len();
         let mut file = BufReader::new(file);
         let line = line(&mut file).map_err(failed)?;

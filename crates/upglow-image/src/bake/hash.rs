@@ -1,11 +1,11 @@
 //! What a baked file was made from, as hashes.
 
 use std::fmt;
-use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
 use sha2::{Digest, Sha256};
+use upglow::open_input;
 
 use super::attributes;
 use super::png;
@@ -47,7 +47,7 @@ impl Hash {
     pub fn of_file(path: impl AsRef<Path>) -> io::Result<Self> {
         /// Bytes that are read at a time.
         const PIECE: usize = 1 << 16;
-        let (mut file, mut piece) = (File::open(path)?, vec![0; PIECE]);
+        let (mut file, mut piece) = (open_input(path.as_ref())?, vec![0; PIECE]);
         let mut hash = Sha256::new();
         loop {
             match file.read(&mut piece)? {

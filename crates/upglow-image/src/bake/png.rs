@@ -1,13 +1,12 @@
 //! PNG pictures, written by bands of rows.
 
 use std::fmt;
-use std::fs::File;
 use std::io::{self, BufReader, Write as _};
 use std::path::Path;
 use std::sync::{Arc, Mutex};
 
 use png::{BitDepth, ColorType, Encoder, SrgbRenderingIntent, StreamWriter};
-use upglow::Aside;
+use upglow::{Aside, open_input};
 use upglow_color::choices;
 
 use super::attributes;
@@ -80,7 +79,7 @@ impl PngWriter {
 
 /// The text [`attributes::MADE`] of a PNG file, if it has one.
 pub(super) fn made(path: &Path) -> Option<String> {
-    let file = BufReader::new(File::open(path).ok()?);
+    let file = BufReader::new(open_input(path).ok()?);
     let reader = png::Decoder::new(file).read_info().ok()?;
     let texts = &reader.info().uncompressed_latin1_text;
     texts.iter().find(|text| text.keyword == attributes::MADE).map(|text| text.text.clone())

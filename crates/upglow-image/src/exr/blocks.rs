@@ -117,6 +117,8 @@ impl Unpacker {
     }
 
     /// The samples of a block: rows, in each row the channels, in each channel the columns.
+    ///
+    /// The reason of a failure is said here: the texts of the crate are made for those who know its code.
     pub(crate) fn unpack(&self, packed: Vec<u8>, block: Block) -> Result<Vec<u8>, String> {
         let section = IntegerBounds::new((0, 0), (block.size[0], block.size[1]));
         let method = self.header.compression;
@@ -132,8 +134,8 @@ impl Unpacker {
         });
         UNPACKING.set(false);
         match unpacked {
-            Ok(bytes) => bytes.map_err(|error| error.to_string()),
-            Err(_) => Err("invalid values".into()),
+            Ok(Ok(bytes)) => Ok(bytes),
+            Ok(Err(_)) | Err(_) => Err("it cannot be decompressed".into()),
         }
     }
 }

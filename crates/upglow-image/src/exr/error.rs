@@ -81,14 +81,14 @@ pub(crate) fn shown(text: impl AsRef<str>) -> String {
 }
 
 /// Some names from a file, for a message of one line.
-pub(crate) fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
+pub(crate) fn listed(names: impl Iterator<Item = impl AsRef<str>>) -> String {
     /// Most names that are listed.
     const NAMES: usize = 12;
     /// Most characters of a name, which usually is a word or two.
     const CHARACTERS: usize = 20;
     let plain = |c: char| if c.is_control() { '\u{fffd}' } else { c };
     let start = |name: &str| name.chars().take(CHARACTERS).map(plain).collect::<String>();
-    let mut names: Vec<String> = names.take(NAMES + 1).map(start).collect();
+    let mut names: Vec<String> = names.take(NAMES + 1).map(|name| start(name.as_ref())).collect();
     if names.len() > NAMES {
         names[NAMES] = "…".into();
     }

@@ -120,6 +120,23 @@ const METHODS: [Method; 10] = [
     Method::DWAB(None),
 ];
 
+/// The name of a method, as the standard and other programs have it.
+pub(crate) fn method_name(method: Method) -> &'static str {
+    match method {
+        Method::Uncompressed => "uncompressed",
+        Method::RLE => "RLE",
+        Method::ZIP1 => "ZIPS",
+        Method::ZIP16 => "ZIP",
+        Method::PIZ => "PIZ",
+        Method::PXR24 => "PXR24",
+        Method::B44 => "B44",
+        Method::B44A => "B44A",
+        Method::DWAA(_) => "DWAA",
+        Method::DWAB(_) => "DWAB",
+        _ => "unknown",
+    }
+}
+
 /// The header of one part of a file.
 #[derive(Clone, Debug)]
 pub(crate) struct Header {

@@ -1,16 +1,18 @@
 //! OpenEXR images, read by regions.
 
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{BufReader, Read, Seek};
 use std::ops::Range;
 use std::path::Path;
 
 use rayon::prelude::*;
+use upglow::open_input;
 
 use super::attribute::Attributes;
 use super::blocks::{Block, Blocks, MAX_BLOCK_BYTES, UNPACKING, Unpacker, decode, pixel_bytes};
 use super::error::{ExrError, listed};
-use super::header::{Channel, Header, Headers, Sample, Window};
+use super::header::{Channel, Header, Headers, Sample, Window, method_name};
 use super::mipmap::level_sizes;
 
 /// One image of an OpenEXR file, opened for reading.
@@ -18,7 +20,7 @@ use super::mipmap::level_sizes;
 /// Reads flat images stored in rows or tiles, with every compression but HTJ2K and with half, float and
 /// unsigned channels; if there are several levels, the one of full resolution. Reading a region takes
 /// the memory of its blocks, compressed and decompressed, and of the requested samples; a block is at
-/// most 1 GiB.
+/// most 1 GiB, and as much is kept of blocks of which only the first rows were read.
 #[derive(Debug)]
 pub struct ExrReader {
     file: BufReader<File>,
@@ -28,8 +30,8 @@ pub struct ExrReader {
     blocks: Blocks,
     /// Position of the table of blocks, bytes.
     table: u64,
-    /// Decompressed blocks of which further rows follow those that were read last.
-    kept: Vec<(Block, Vec<u8>)>,
+    /// Decompressed blocks, by index, of which further rows follow those that were read last.
+    kept: BTreeMap<usize, (Block, Vec<u8>)>,
     /// Number of the part, which each block of a multi-part file repeats.
     part: Option<i32>,
     /// Number of the level, which each tile repeats.
@@ -84,7 +86,7 @@ impl ExrReader {
         path: &Path,
         choose: impl FnOnce(&[Header]) -> Result<usize, E>,
     ) -> Result<Self, E> {
-        let file = File::open(path).map_err(ExrError::Io)?;
+        let file = open_input(path).map_err(ExrError::Io)?;
         let length = file.metadata().map_err(ExrError::Io)?.len();
         let mut file = BufReader::new(file);
         let headers = Headers::read(&mut file)?;
@@ -122,7 +124,7 @@ impl ExrReader {
             header,
             blocks,
             table,
-            kept: Vec::new(),
+            kept: BTreeMap::new(),
             part,
             level: 0,
         })
@@ -156,6 +158,12 @@ impl ExrReader {
     /// Rows of a block.
     pub fn block_rows(&self) -> usize {
         self.blocks.block_size()[1]
+    }
+
+    /// Bytes of all blocks beside each other, decompressed.
+    pub(crate) fn block_row_bytes(&self) -> u64 {
+        let [width, _] = self.size();
+        width as u64 * self.block_rows() as u64 * pixel_bytes(&self.header) as u64
     }
 
     /// The index of the channel of this name.
@@ -204,7 +212,7 @@ impl ExrReader {
             let (columns, rows) = ([columns.start, columns.end], [rows.start, rows.end]);
             return Err(ExrError::Outside { columns, rows, size });
         }
-        let places = channels.iter().map(|&c| self.place(c)).collect::<Result<Vec<_>, _>>()?;
+        let places = self.places(channels)?;
         let (region, pixel) = (Region { columns, rows }, pixel_bytes(&self.header));
         let mut planes = vec![vec![0.0; region.columns.len() * region.rows.len()]; channels.len()];
         let is_cut = |block: &Block| block.origin[1] + block.size[1] > region.rows.end;
@@ -213,14 +221,12 @@ impl ExrReader {
                 region.copy((block, bytes), pixel, *place, plane);
             }
         };
-        let mut groups = self.block_groups(&region);
         let mut kept = std::mem::take(&mut self.kept);
-        kept.retain(|(block, _)| groups.iter().flatten().any(|wanted| wanted == block));
-        kept.iter().for_each(|(block, bytes)| copy(*block, bytes));
-        for group in &mut groups {
-            group.retain(|block| kept.iter().all(|(known, _)| known != block));
-        }
-        kept.retain(|(block, _)| is_cut(block));
+        kept.retain(|_, (block, _)| region.touches(block));
+        kept.values().for_each(|(block, bytes)| copy(*block, bytes));
+        let groups = self.block_groups(&region, &kept);
+        kept.retain(|_, (block, _)| is_cut(block));
+        let mut kept_bytes: usize = kept.values().map(|(_, bytes)| bytes.len()).sum();
         for group in groups {
             let packed = group
                 .into_iter()
@@ -232,8 +238,9 @@ impl ExrReader {
                 .collect::<Result<Vec<_>, ExrError>>()?;
             for (block, bytes) in unpacked {
                 copy(block, &bytes);
-                if is_cut(&block) {
-                    kept.push((block, bytes));
+                if is_cut(&block) && (kept_bytes + bytes.len()) as u64 <= MAX_BLOCK_BYTES {
+                    kept_bytes += bytes.len();
+                    kept.insert(block.index, (block, bytes));
                 }
             }
         }
@@ -241,25 +248,52 @@ impl ExrReader {
         Ok(planes)
     }
 
-    /// The blocks of a region in groups that fit in memory together.
-    fn block_groups(&self, region: &Region) -> Vec<Vec<Block>> {
-        /// Decompressed bytes of one group: enough work for many cores, little memory.
-        const GROUP_BYTES: usize = 64 << 20;
-        let blocks: Vec<Block> =
-            self.blocks.touching([region.columns.clone(), region.rows.clone()]).collect();
+    /// The blocks of a region that are not known, in groups that fit in memory together.
+    fn block_groups(
+        &self,
+        region: &Region,
+        known: &BTreeMap<usize, (Block, Vec<u8>)>,
+    ) -> Vec<Vec<Block>> {
+        let touching = self.blocks.touching([region.columns.clone(), region.rows.clone()]);
+        let blocks: Vec<Block> = touching.filter(|b| !known.contains_key(&b.index)).collect();
         let [columns, rows] = self.blocks.block_size();
         let bytes = (columns * rows * pixel_bytes(&self.header)).max(1);
         blocks.chunks((GROUP_BYTES / bytes).max(1)).map(<[Block]>::to_vec).collect()
     }
 
-    /// The bytes of one pixel in the channels before this one, and its type of samples.
-    fn place(&self, channel: usize) -> Result<(usize, Sample), ExrError> {
-        let Some(found) = self.channels().get(channel) else {
-            let expected = format!("0 to {}", self.channels().len().saturating_sub(1));
-            return Err(ExrError::NoChannel { name: format!("number {channel}"), expected });
+    /// Columns and rows of rectangles that cover the image, block by block, and are cheap to read one after the
+    /// other: of each, the blocks and the samples of this many channels take some 64 MiB, or are a row of one block.
+    pub(crate) fn pieces(&self, channels: usize) -> Vec<[Range<usize>; 2]> {
+        let [width, height] = self.size();
+        let [block_width, block_rows] = self.blocks.block_size();
+        let column_bytes = pixel_bytes(&self.header).max(channels * size_of::<f32>()).max(1);
+        let across = (GROUP_BYTES / (block_width * block_rows * column_bytes)).max(1) * block_width;
+        let down = (GROUP_BYTES / (across.min(width) * column_bytes)).clamp(1, block_rows);
+        let steps = |range: Range<usize>, step: usize| {
+            let end = range.end;
+            range.step_by(step).map(move |from| from..end.min(from + step))
         };
-        let before = self.channels()[..channel].iter().map(|c| c.sample.bytes()).sum();
-        Ok((before, found.sample))
+        steps(0..height, block_rows)
+            .flat_map(|rows| steps(0..width, across).map(move |columns| (columns, rows.clone())))
+            .flat_map(|(columns, rows)| steps(rows, down).map(move |rows| [columns.clone(), rows]))
+            .collect()
+    }
+
+    /// For each of these channels, the bytes of one pixel in the channels before it, and its type of samples.
+    fn places(&self, channels: &[usize]) -> Result<Vec<(usize, Sample)>, ExrError> {
+        let each = self.channels().iter().scan(0, |before, channel| {
+            let place = (*before, channel.sample);
+            *before += channel.sample.bytes();
+            Some(place)
+        });
+        let all: Vec<(usize, Sample)> = each.collect();
+        let place = |&channel: &usize| {
+            all.get(channel).copied().ok_or_else(|| {
+                let expected = format!("0 to {}", all.len().saturating_sub(1));
+                ExrError::NoChannel { name: format!("number {channel}"), expected }
+            })
+        };
+        channels.iter().map(place).collect()
     }
 
     /// The compressed bytes of a block.
@@ -322,7 +356,7 @@ impl ExrReader {
     }
 
     fn unpack(&self, block: Block, packed: Vec<u8>) -> Result<Vec<u8>, ExrError> {
-        let expected = || format!("{:?} data of its size", self.header.method);
+        let expected = || format!("{} data of its size", method_name(self.header.method));
         let unpacked = self.unpacker.unpack(packed, block);
         unpacked.map_err(|found| self.damaged(block, found, expected()))
     }
@@ -353,7 +387,17 @@ struct Region {
     rows: Range<usize>,
 }
 
+/// Decompressed bytes of one group of blocks: enough work for many cores, little memory.
+const GROUP_BYTES: usize = 64 << 20;
+
 impl Region {
+    fn touches(&self, block: &Block) -> bool {
+        let meets = |k: usize, range: &Range<usize>| {
+            range.start < block.origin[k] + block.size[k] && block.origin[k] < range.end
+        };
+        meets(0, &self.columns) && meets(1, &self.rows)
+    }
+
     /// Copies the samples of one channel that lie in both the block and this region. `pixel` and
     /// `before` are the bytes of one pixel in all channels and in those before the channel.
     fn copy(

@@ -72,6 +72,30 @@ proptest! {
 }
 
 #[test]
+fn pieces_cover_an_image_once_and_are_small() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("x.exr");
+    for (size, channels) in [([300, 200], 3), ([70, 40], 3), ([5, 3], 7)] {
+        let names: Vec<String> = (0..channels).map(|c| format!("c{c}")).collect();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        write(&path, description(size, &names), &planes(size, channels), 16);
+        let reader = ExrReader::open(&path).unwrap();
+        // With a million channels, a piece is some columns of one row.
+        for wanted in [1, 3, 1_000_000] {
+            let mut covered = vec![0; size[0] * size[1]];
+            for [columns, rows] in reader.pieces(wanted) {
+                let bytes = columns.len() * rows.len() * wanted * size_of::<f32>();
+                assert!(bytes <= 64 << 20 || rows.len() == 1, "{columns:?} {rows:?}");
+                for y in rows {
+                    columns.clone().for_each(|x| covered[y * size[0] + x] += 1);
+                }
+            }
+            assert!(covered.iter().all(|&count| count == 1), "{size:?} {wanted}");
+        }
+    }
+}
+
+#[test]
 fn bytes_depend_on_neither_bands_nor_threads() {
     let folder = tempfile::tempdir().unwrap();
     let planes = planes([300, 200], 3);

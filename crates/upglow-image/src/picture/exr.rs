@@ -1,5 +1,6 @@
 //! Colors of an OpenEXR file.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::Path;
 
@@ -9,7 +10,7 @@ use super::chromaticities;
 use super::encoding::Encoding;
 use super::error::PictureError;
 use super::interop::InteropSpace;
-use super::source::{Alpha, Facts, LastSample, Pixels, Source};
+use super::source::{Alpha, Facts, LastSample, Pixels, Source, check_memory};
 use super::stated::{Stated, StatedColor};
 use crate::exr::error::{listed, shown};
 use crate::exr::header::{Channel, Header, Sample};
@@ -23,6 +24,9 @@ pub(super) struct ExrPicture {
     alpha: Option<usize>,
 }
 
+/// Rows of a tile that may be decompressed again for each band, where its pixels take more memory than is kept.
+const KEPT_ROWS: usize = 64;
+
 impl ExrPicture {
     pub(super) fn open(
         path: &Path,
@@ -34,6 +38,10 @@ impl ExrPicture {
             prefix = chosen.prefix;
             Ok::<_, PictureError>(chosen.part)
         })?;
+        // Of higher blocks the rows that follow are kept, because each row would decompress them again.
+        if reader.block_rows() > KEPT_ROWS {
+            check_memory("a row of tiles", reader.block_row_bytes())?;
+        }
         let index = |name: &str| reader.channel(&format!("{prefix}{name}"));
         let colors = match (index("R"), index("G"), index("B")) {
             (Ok(red), Ok(green), Ok(blue)) => [red, green, blue],
@@ -132,25 +140,22 @@ fn labels(all: &[Layer]) -> String {
         let full = layer.full().filter(|_| is_ambiguous);
         full.unwrap_or_else(|| layer.label().to_owned())
     };
-    let names: Vec<String> = all.iter().map(name).collect();
-    listed(names.iter().map(String::as_str))
+    listed(all.iter().map(name))
 }
 
 fn layers(part: usize, header: &Header) -> Vec<Layer> {
     let is_number = |c: &&Channel| c.sample != Sample::Uint;
-    let channels = header.channels.iter().filter(is_number);
-    let names: Vec<&str> = channels.map(|c| c.name.as_str()).collect();
-    let has = |prefix: &str, name: &str| names.iter().any(|n| n.strip_prefix(prefix) == Some(name));
+    let names: BTreeSet<&str> =
+        header.channels.iter().filter(is_number).map(|c| c.name.as_str()).collect();
+    let has = |prefix: &str, name: &str| names.contains(format!("{prefix}{name}").as_str());
     let with = |prefix: &str| Layer { part, part_name: header.name.clone(), prefix: prefix.into() };
-    let colored = names.iter().filter_map(|n| n.strip_suffix('R'));
-    let colored = colored.filter(|p| is_prefix(p) && has(p, "G") && has(p, "B"));
-    let mut found: Vec<Layer> = colored.map(with).collect();
+    let is_colored = |p: &&str| is_prefix(p) && ["R", "G", "B"].iter().all(|n| has(p, n));
     // Beside X, Z or chroma, Y is a coordinate or a luminance.
     let is_gray = |p: &&str| is_prefix(p) && !["X", "Z", "RY", "BY"].iter().any(|n| has(p, n));
+    let colored = names.iter().filter_map(|n| n.strip_suffix('R')).filter(is_colored);
     let gray = names.iter().filter_map(|n| n.strip_suffix('Y')).filter(is_gray);
-    let gray: Vec<Layer> = gray.map(with).filter(|layer| !found.contains(layer)).collect();
-    found.extend(gray);
-    found
+    let gray = gray.filter(|p| !is_colored(p));
+    colored.chain(gray).map(with).collect()
 }
 
 fn is_prefix(text: &str) -> bool {

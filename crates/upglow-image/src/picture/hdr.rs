@@ -9,6 +9,7 @@ use std::io::{BufRead, BufReader, Read};
 use std::ops::Range;
 use std::path::Path;
 
+use upglow::open_input;
 use upglow_color::rounding::to_single;
 
 use super::chromaticities::space;
@@ -45,7 +46,7 @@ const WIDTHS_BY_COMPONENT: Range<usize> = 8..0x8000;
 
 impl HdrPicture {
     pub(super) fn open(path: &Path) -> Result<(Box<dyn Source>, Facts), PictureError> {
-        let mut file = BufReader::new(File::open(path)?);
+        let mut file = BufReader::new(open_input(path)?);
         let lines = Lines::read(&mut file)?;
         if !lines.has_format {
             return Err(damaged("no line FORMAT=32-bit_rle_rgbe"));

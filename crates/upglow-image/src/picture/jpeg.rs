@@ -11,6 +11,7 @@ use std::fmt;
 use std::ops::Range;
 use std::path::Path;
 
+use upglow::read_input;
 use zune_core::bytestream::ZCursor;
 use zune_core::colorspace::ColorSpace;
 use zune_core::options::DecoderOptions;
@@ -21,7 +22,7 @@ use super::error::PictureError;
 use super::exif::Exif;
 use super::icc;
 use super::source::{
-    Facts, LastSample, Pixels, Source, add_bytes, check_memory, check_size, pixels,
+    Facts, LastSample, MAX_AT_ONCE, Pixels, Source, add_bytes, check_memory, check_size, pixels,
 };
 
 pub(super) struct JpegPicture {
@@ -83,7 +84,7 @@ const MAX_SCANS: usize = 100;
 impl JpegPicture {
     pub(super) fn open(path: &Path) -> Result<(Box<dyn Source>, Facts), PictureError> {
         check_memory("a JPEG file", std::fs::metadata(path)?.len())?;
-        let mut packed = std::fs::read(path)?;
+        let mut packed = read_input(path, MAX_AT_ONCE)?;
         let segments = Segments::read(&mut packed)?;
         packed.truncate(segments.end);
         let Some(Frame { size, components, is_progressive }) = &segments.frame else {

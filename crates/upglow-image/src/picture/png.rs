@@ -9,6 +9,7 @@ use std::path::Path;
 use png::{
     BitDepth, ColorType, DecodeOptions, Decoder, DecodingError, Info, Reader, Transformations,
 };
+use upglow::open_input;
 use upglow_color::RgbSpace;
 
 use super::chromaticities::space;
@@ -47,7 +48,7 @@ impl PngPicture {
         // A damaged chunk of colors must not count as absent.
         options.set_skip_ancillary_crc_failures(false);
         options.set_ignore_text_chunk(true);
-        let file = BufReader::new(File::open(path)?);
+        let file = BufReader::new(open_input(path)?);
         let mut decoder = Decoder::new_with_options(file, options);
         decoder.set_limits(png::Limits { bytes: CHUNK_BYTES });
         decoder.set_transformations(Transformations::EXPAND);

@@ -9,6 +9,8 @@ use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::path::Path;
 
+use upglow::open_input;
+
 use super::error::PictureError;
 use super::source::{Alpha, Facts, LastSample, Pixels, Source, add_bytes, check_size, pixels};
 use super::stated::{Stated, StatedColor};
@@ -72,7 +74,7 @@ const KINDS: &str = "gray of 8 bits, gray with alpha of 16, or colors of 15, 16,
 /// Whether a file ends like a TGA file, or is named like one: its first bytes do not tell.
 pub(super) fn is_tga(path: &Path) -> Result<bool, PictureError> {
     let suffix = path.extension().and_then(|suffix| suffix.to_str()).unwrap_or_default();
-    Ok(suffix.eq_ignore_ascii_case("tga") || extension_area(&mut File::open(path)?)?.is_some())
+    Ok(suffix.eq_ignore_ascii_case("tga") || extension_area(&mut open_input(path)?)?.is_some())
 }
 
 /// The position of the extension area, which is 0 in files of version 2 without one; `None` for files
@@ -92,7 +94,7 @@ fn extension_area(file: &mut (impl Read + Seek)) -> Result<Option<u64>, PictureE
 
 impl TgaPicture {
     pub(super) fn open(path: &Path) -> Result<(Box<dyn Source>, Facts), PictureError> {
-        let mut file = BufReader::new(File::open(path)?);
+        let mut file = BufReader::new(open_input(path)?);
         let attributes = attributes_type(&mut file)?;
         file.rewind()?;
         let header: [u8; HEADER_BYTES] = bytes(&mut file)?;

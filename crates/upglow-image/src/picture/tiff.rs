@@ -13,6 +13,8 @@ pub(super) use self::directory::Directory;
 use self::directory::damaged;
 use self::packed::{Method, Packed};
 use self::samples::{Number, Predictor, Storage};
+use upglow::open_input;
+
 use super::chromaticities::space;
 use super::encoding::Encoding;
 use super::error::PictureError;
@@ -89,7 +91,7 @@ type Fields = Directory<BufReader<File>>;
 
 impl TiffPicture {
     pub(super) fn open(path: &Path) -> Result<(Box<dyn Source>, Facts), PictureError> {
-        let mut fields = Directory::read(BufReader::new(File::open(path)?))?;
+        let mut fields = Directory::read(BufReader::new(open_input(path)?))?;
         check_image(&mut fields)?;
         let method = fields.integer(tag::COMPRESSION, 1)?;
         let method = Method::of_code(method);

@@ -4,7 +4,7 @@
 
 mod dye;
 
-use upglow::{Accounting, Bispectral, DyeModel, FilmModel, Fluorescence, Mixing, Mixture};
+use upglow::{Accounting, Bispectral, DyeModel, DyeSet, FilmModel, Fluorescence, Mixing, Mixture};
 use upglow_color::rounding::to_single;
 use upglow_color::{Grid, choices};
 
@@ -182,8 +182,13 @@ impl CompactLayout {
         stated(attributes, VERSION, VERSION_VALUE, is_version)?;
         let (form, mixing) = (choice(attributes, FORM)?, choice(attributes, MIXING)?);
         let accounting = choice(attributes, ACCOUNTING)?;
-        let split = |text: &str| Some(text.split(';').map(str::to_owned).collect::<Vec<_>>());
-        let names = stated(attributes, DYES, "names separated by semicolons", split)?;
+        let split = |text: &str| {
+            let names: Vec<String> =
+                text.split(';').take(DyeSet::MOST + 1).map(str::to_owned).collect();
+            (names.len() <= DyeSet::MOST).then_some(names)
+        };
+        let expected = format!("1 to {} names separated by semicolons", DyeSet::MOST);
+        let names = stated(attributes, DYES, &expected, split)?;
         let (wavelengths_nm, _) = curve(attributes, &names[0], "absorption", None)?;
         let dyes = names.iter().map(|name| CompactDye::stated(attributes, name, &wavelengths_nm));
         let dyes = dyes.collect::<Result<_, _>>()?;
@@ -390,6 +395,7 @@ fn channel_word(name: &str) -> String {
 mod tests {
     use super::dye::dye_attribute;
     use super::*;
+    use crate::exr::attribute::Attribute;
     use proptest::prelude::*;
     use upglow::{
         Cube, DyeOptions, DyeSet, FitRecord, Interpolation, Material, Model, Node, QuantumYield,
@@ -581,6 +587,12 @@ mod tests {
         assert_eq!(
             with(FORM, "x"),
             "attribute upglow.compact.form is \"x\", expected dyes or lobes"
+        );
+        let mut attributes = layout.attributes();
+        attributes.insert(FORM.into(), Attribute::new("st\u{1b}[2Jng", Vec::new()));
+        assert_eq!(
+            CompactLayout::from_attributes(&attributes).unwrap_err().to_string(),
+            "attribute upglow.compact.form is a st\\u{1b}[2Jng, expected dyes or lobes"
         );
         let dye = layout.dyes[0].name.clone();
         let absorption = dye_attribute(&dye, "absorption");

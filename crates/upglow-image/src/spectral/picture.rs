@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::path::Path;
 
-use upglow_color::{BispectralUnit, DonaldsonMatrix};
+use upglow_color::{BispectralUnit, DonaldsonError, DonaldsonMatrix};
 
 use super::channel::{SpectralChannel, key_order, rising_pairs, stated_unit};
 use super::compact::CompactLayout;
@@ -135,9 +135,12 @@ impl SpectralPicture {
             return MeanTexel::of(&self.at(x, y)?).matrix(unit);
         }
         let mut mean: Option<MeanTexel> = None;
-        for y in 0..self.size()[1] {
-            for texel in self.row(y, 1)? {
-                let texel = MeanTexel::of(&texel);
+        let numbers: Vec<usize> = (0..self.reader.channels().len()).collect();
+        for [columns, rows] in self.reader.pieces(numbers.len()) {
+            let count = columns.len() * rows.len();
+            let values = self.reader.read_region(columns, rows, &numbers)?;
+            for i in 0..count {
+                let texel = MeanTexel::of(&self.texel(|channel| values[channel][i]));
                 match &mut mean {
                     Some(mean) => mean.add(&texel),
                     None => mean = Some(texel),
@@ -213,6 +216,11 @@ impl MeanTexel {
         let reflected = || self.reflectance.iter().map(|(nm, _)| *nm);
         let incident = ascending(reflected().chain(self.reradiation.iter().map(|(i, ..)| *i)));
         let outgoing = ascending(reflected().chain(self.reradiation.iter().map(|(_, o, _)| *o)));
+        for (axis, found) in [("incident", incident.len()), ("outgoing", outgoing.len())] {
+            if found > DonaldsonMatrix::MOST_WAVELENGTHS {
+                return Err(DonaldsonError::AxisLength { axis, found }.into());
+            }
+        }
         let mut values = vec![vec![0.0; incident.len()]; outgoing.len()];
         let index = |axis: &[f64], nm: f64| axis.partition_point(|at| *at < nm);
         for &(in_nm, out_nm, sum) in &self.reradiation {

@@ -3,6 +3,7 @@
 use upglow_color::Choice;
 
 use crate::exr::attribute::Attributes;
+use crate::exr::error::shown;
 use crate::spectral::error::FormError;
 
 /// Reads attribute `name` with `parse`, which returns `None` for text that is not as `expected`.
@@ -15,12 +16,13 @@ pub(crate) fn stated<T>(
     /// Characters that fit on a line.
     const SHOWN: usize = 40;
     let wrong = |found: String| FormError::Attribute {
-        name: name.into(),
+        // It may hold the name of a dye, and that any character.
+        name: shown(name),
         found,
         expected: expected.into(),
     };
     let value = attributes.get(name).ok_or_else(|| wrong("absent".into()))?;
-    let text = value.as_text().ok_or_else(|| wrong(format!("a {}", value.kind)))?;
+    let text = value.as_text().ok_or_else(|| wrong(format!("a {}", shown(&value.kind))))?;
     let start = || text.chars().take(SHOWN).collect::<String>();
     parse(text).ok_or_else(|| wrong(format!("{:?}", start())))
 }

@@ -443,3 +443,30 @@ fn a_matrix_without_a_unit_is_refused() {
     );
     assert_eq!(found.diagonal(), upglow_color::Diagonal::Reflected);
 }
+
+/// Their pairs, listed, would take 20 GB.
+const VERY_MANY: usize = 50_000;
+
+#[test]
+fn very_many_channels_are_read_and_linted() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("many.exr");
+    let names: Vec<String> = (1..=VERY_MANY).map(|nm| format!("T.{nm},000000nm")).collect();
+    let moved = "T.1,000000nm.3,000000nm".to_owned();
+    let names: Vec<String> = names.into_iter().chain([moved]).collect();
+    let described = crate::ExrDescription::new([1, 1], names.iter().map(String::as_str));
+    let mut writer = crate::ExrWriter::create(&path, described).unwrap();
+    let value = [0.25];
+    writer.write_band(&vec![&value[..]; names.len()]).unwrap();
+    writer.finish().unwrap();
+    let lint = Lint::of_file(&path).unwrap();
+    let pairs = lint.findings.iter().find(|finding| finding.rule == Rule::Pairs).unwrap();
+    assert_eq!(
+        pairs.found,
+        "1249974999 of 1249975000 pairs absent, the first T.1,000000nm.2,000000nm"
+    );
+    let mut picture = SpectralPicture::open(&path).unwrap();
+    assert_eq!(picture.at(0, 0).unwrap().reflectance.len(), VERY_MANY);
+    let refused = picture.matrix(None, Some(BispectralUnit::PerBand)).unwrap_err().to_string();
+    assert_eq!(refused, "50000 incident wavelengths, expected 2 to 1001");
+}

@@ -93,6 +93,8 @@ impl CoefficientTable {
     /// Smallest and greatest number of nodes along an axis. With 150 levels of brightness, the last
     /// two are equal in single precision.
     pub const RESOLUTIONS: [usize; 2] = [2, 128];
+    /// More bytes than the largest table has.
+    pub const MOST_BYTES: u64 = 128 << 20;
 
     /// The levels of brightness that the published program writes: dense at both ends.
     pub fn levels(resolution: usize) -> Vec<f32> {

@@ -14,6 +14,7 @@ use crate::cube::error::{CubeFileError, ReadCubeError};
 use crate::cube::header::{CubeCurves, ENTRY, Header};
 use crate::cube::plain_json::PlainJson;
 use crate::cube::{Cube, CubeError, Node};
+use crate::input::read_input;
 use crate::material::model::Model;
 use crate::tensor::Tensor;
 
@@ -26,6 +27,8 @@ const ILLUMINANT: &str = "illuminant";
 const OBSERVER: &str = "observer";
 const DYE_CURVES: &str = "dye_curves";
 const CHECKSUM: &str = "sha256";
+/// Twice what a cube of the greatest resolution takes.
+const MOST_BYTES: u64 = 1 << 30;
 
 impl Cube {
     /// The content of the cube's file.
@@ -122,8 +125,8 @@ impl Cube {
     /// [`CubeFileError`] if it cannot be read or is not a cube; no content panics.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, CubeFileError> {
         let path = path.as_ref();
-        let bytes =
-            std::fs::read(path).map_err(|cause| CubeFileError::Io { path: path.into(), cause })?;
+        let bytes = read_input(path, MOST_BYTES)
+            .map_err(|cause| CubeFileError::Io { path: path.into(), cause })?;
         Self::from_bytes(&bytes)
             .map_err(|cause| CubeFileError::Content { path: path.into(), cause })
     }

@@ -15,9 +15,6 @@ pub struct DyeSet {
     dyes: Vec<MeasuredDye>,
 }
 
-/// Dyes in a cube are numbered by one byte.
-const MOST_DYES: usize = 255;
-
 /// Why a set of dyes is unknown or invalid.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -118,7 +115,7 @@ pub enum DyeSetError {
         problem: String,
     },
     /// No dye, or too many.
-    #[error("{found} dyes, expected 1 to {MOST_DYES}")]
+    #[error("{found} dyes, expected 1 to {}", DyeSet::MOST)]
     Count {
         /// Dyes found.
         found: usize,
@@ -126,6 +123,9 @@ pub enum DyeSetError {
 }
 
 impl DyeSet {
+    /// Most dyes of a set: in a cube they are numbered by one byte.
+    pub const MOST: usize = 255;
+
     /// A ring of these dyes, in this order.
     ///
     /// # Errors
@@ -135,7 +135,7 @@ impl DyeSet {
     /// mean wavelength is below that of the absorption; if a quantum yield is not in 0..=1; if two dyes
     /// have one name; or if a set or dye has a built-in name and not the built-in dyes or numbers.
     pub fn new(name: &str, dyes: Vec<MeasuredDye>) -> Result<Self, DyeSetError> {
-        if dyes.is_empty() || dyes.len() > MOST_DYES {
+        if dyes.is_empty() || dyes.len() > Self::MOST {
             return Err(DyeSetError::Count { found: dyes.len() });
         }
         dyes.iter().try_for_each(check_dye)?;
@@ -283,7 +283,8 @@ fn csv_files(folder: &Path) -> Result<Vec<PathBuf>, DyeSetError> {
 }
 
 fn read_text(path: &Path) -> Result<String, DyeSetError> {
-    std::fs::read_to_string(path).map_err(|cause| DyeSetError::Read { path: path.into(), cause })
+    crate::input::read_text_input(path)
+        .map_err(|cause| DyeSetError::Read { path: path.into(), cause })
 }
 
 fn read_dye(path: &Path, yields: &[(String, f64)]) -> Result<MeasuredDye, DyeSetError> {
@@ -302,7 +303,7 @@ fn read_yields(path: &Path) -> Result<Vec<(String, f64)>, DyeSetError> {
     let header = lines.next().unwrap_or_default();
     let column = |name: &str| header.iter().position(|cell| cell == name);
     let (Some(file), Some(quantum_yield)) = (column("file"), column("quantum_yield")) else {
-        let found = text.lines().next().unwrap_or_default();
+        let found: String = text.lines().next().unwrap_or_default().chars().take(80).collect();
         let problem = format!("header {found:?}, expected columns file and quantum_yield");
         return Err(DyeSetError::List { path: path.into(), problem });
     };

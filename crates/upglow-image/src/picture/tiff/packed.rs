@@ -7,6 +7,7 @@ use std::path::Path;
 
 use miniz_oxide::inflate::stream::{InflateState, inflate};
 use miniz_oxide::{DataFormat, MZError, MZFlush, MZStatus};
+use upglow::open_input;
 use weezl::LzwStatus;
 use weezl::decode::Decoder as LzwDecoder;
 
@@ -82,7 +83,7 @@ impl fmt::Debug for Packed {
 
 impl Packed {
     pub(super) fn open(path: &Path, method: Method, is_reversed: bool) -> io::Result<Self> {
-        let file = File::open(path)?;
+        let file = open_input(path)?;
         let length = file.metadata()?.len();
         let (buffer, state) = (Vec::new(), State::Plain);
         Ok(Self { file, length, method, is_reversed, left: 0, buffer, used: 0, state })
@@ -178,7 +179,7 @@ impl Packed {
                     match result.status {
                         Ok(LzwStatus::Done) if result.consumed_out == 0 => return Ok(0),
                         Ok(_) => (result.consumed_in, result.consumed_out),
-                        Err(error) => return Err(damaged(error.to_string())),
+                        Err(_) => return Err(damaged("invalid LZW data".into())),
                     }
                 }
                 State::Deflate(state) => {

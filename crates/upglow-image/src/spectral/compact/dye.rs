@@ -1,5 +1,7 @@
 //! One dye of the compact form, and its attributes.
 
+use upglow_color::DonaldsonMatrix;
+
 use crate::exr::attribute::{Attribute, Attributes};
 use crate::spectral::attribute_spectrum::{parse_spectrum, print_spectrum};
 use crate::spectral::error::FormError;
@@ -66,10 +68,11 @@ pub(super) fn curve(
     wavelengths_nm: Option<&[f64]>,
 ) -> Result<(Vec<f64>, Vec<f64>), FormError> {
     const EXPECTED: &str = "numbers from 0 to 1 as 400nm:0.5;410nm:0.6, with ascending wavelengths, \
-                            the same in all curves";
+                            at most 1001, the same in all curves";
     stated(attributes, &dye_attribute(dye, what), EXPECTED, |text| {
         parse_spectrum(text).filter(|(nm, values)| {
-            nm.is_sorted_by(|a, b| a < b)
+            nm.len() <= DonaldsonMatrix::MOST_WAVELENGTHS
+                && nm.is_sorted_by(|a, b| a < b)
                 && wavelengths_nm.is_none_or(|expected| nm == expected)
                 && values.iter().all(|v| (0.0..=1.0).contains(v))
         })

@@ -25,7 +25,7 @@ struct Occurrences {
 }
 
 impl Occurrences {
-    fn add(&mut self, x: usize, y: usize, name: &str, value: f64) {
+    fn add(&mut self, [x, y]: [usize; 2], name: &str, value: f64) {
         self.count += 1;
         self.most = self.most.max(value);
         if self.first.is_none() {
@@ -44,15 +44,14 @@ pub(super) fn check_samples(
     channels: &[ListedChannel],
     lint: &mut Lint,
 ) -> Result<(), ExrError> {
-    let [_, height] = reader.size();
     let sums = EnergySums::new(reader, channels);
     let [mut broken, mut negative, mut bright] = std::array::from_fn(|_| Occurrences::default());
     let numbers: Vec<usize> = channels.iter().map(|found| found.number).collect();
-    for top in (0..height).step_by(reader.block_rows()) {
-        let rows = top..height.min(top + reader.block_rows());
-        let planes = reader.read_rows(rows, &numbers)?;
-        check_signs(reader.size()[0], top, channels, &planes, [&mut broken, &mut negative]);
-        sums.check(reader.size()[0], top, &planes, &mut bright);
+    for [columns, rows] in reader.pieces(numbers.len()) {
+        let place = Place { left: columns.start, top: rows.start, width: columns.len() };
+        let planes = reader.read_region(columns, rows, &numbers)?;
+        check_signs(place, channels, &planes, [&mut broken, &mut negative]);
+        sums.check(place, &planes, &mut bright);
     }
     if let Some(found) = broken.report("samples that are not finite numbers") {
         lint.add(Rule::Finite, found, "finite numbers");
@@ -67,9 +66,23 @@ pub(super) fn check_samples(
     Ok(())
 }
 
-fn check_signs(
-    width: usize,
+/// Where some samples are in the image.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    left: usize,
     top: usize,
+    width: usize,
+}
+
+impl Place {
+    /// Column and row of the pixel with this number.
+    fn at(self, i: usize) -> [usize; 2] {
+        [self.left + i % self.width, self.top + i / self.width]
+    }
+}
+
+fn check_signs(
+    place: Place,
     channels: &[ListedChannel],
     planes: &[Vec<f32>],
     [broken, negative]: [&mut Occurrences; 2],
@@ -77,11 +90,10 @@ fn check_signs(
     for (found, plane) in channels.iter().zip(planes) {
         let signed = matches!(found.channel, SpectralChannel::Radiance { stokes: 1.., .. });
         for (i, &value) in plane.iter().enumerate() {
-            let (x, y) = (i % width, top + i / width);
             if !value.is_finite() {
-                broken.add(x, y, &found.name, f64::from(value));
+                broken.add(place.at(i), &found.name, f64::from(value));
             } else if value < 0.0 && !signed {
-                negative.add(x, y, &found.name, f64::from(value));
+                negative.add(place.at(i), &found.name, f64::from(value));
             }
         }
     }
@@ -124,14 +136,14 @@ impl EnergySums {
         Self { name: name.collect(), terms, most }
     }
 
-    fn check(&self, width: usize, top: usize, planes: &[Vec<f32>], bright: &mut Occurrences) {
+    fn check(&self, place: Place, planes: &[Vec<f32>], bright: &mut Occurrences) {
         for (name, terms) in self.name.iter().zip(&self.terms) {
             let pixels = terms.first().map_or(0, |(plane, _)| planes[*plane].len());
             for i in 0..pixels {
                 let sum: f64 =
                     terms.iter().map(|&(plane, w)| w * f64::from(planes[plane][i])).sum();
                 if sum > self.most {
-                    bright.add(i % width, top + i / width, name, sum);
+                    bright.add(place.at(i), name, sum);
                 }
             }
         }
