@@ -6,7 +6,8 @@ use std::time::Instant;
 
 use crate::step::{Step, StepError, cargo, finish, finish_aloud, output_of};
 use crate::{
-    c_library, explorer, guide, layers, links, packages, python, python_wheel, site, tables, words,
+    c_library, explorer, fuzz, guide, layers, links, packages, python, python_wheel, site, tables,
+    words,
 };
 
 /// Set for the slow tests, so that they may take larger samples.
@@ -30,15 +31,17 @@ const STEPS: [Step; 9] = [
     Step { name: "licenses", about: "licenses and sources of the dependencies", run: licenses },
 ];
 
-const SLOW_STEP: Step =
-    Step { name: "slow-tests", about: "the tests named slow_*, with --slow", run: slow_tests };
+const SLOW_STEPS: [Step; 2] = [
+    Step { name: "slow-tests", about: "the tests named slow_*, with --slow", run: slow_tests },
+    fuzz::SLOW_STEP,
+];
 
-/// Every step; the slow one is the last.
+/// Every step; the slow ones are the last.
 fn all_steps() -> Vec<Step> {
     let bindings = c_library::STEPS.into_iter().chain(python_wheel::STEPS);
     let texts = words::STEPS.into_iter().chain(links::STEPS).chain(site::STEPS);
-    let others = texts.chain(packages::STEPS).chain(explorer::STEPS).chain(bindings);
-    STEPS.into_iter().chain(others).chain([SLOW_STEP]).collect()
+    let others = texts.chain(packages::STEPS).chain(explorer::STEPS).chain(fuzz::STEPS);
+    STEPS.into_iter().chain(others).chain(bindings).chain(SLOW_STEPS).collect()
 }
 
 /// The steps and options that the command line names.
@@ -80,7 +83,7 @@ impl Plan {
                 }
             }
         }
-        let is_usual = |step: &Step| slow || step.name != SLOW_STEP.name;
+        let is_usual = |step: &Step| slow || SLOW_STEPS.iter().all(|other| other.name != step.name);
         let is_asked_for = |&(place, step): &(usize, &Step)| match only[..] {
             [] => place >= from && (plan.list || is_usual(step)),
             _ => only.contains(&place),
@@ -207,7 +210,7 @@ mod tests {
     #[test]
     fn steps_are_chosen_by_name_and_run_in_their_order() {
         assert_eq!(names(&["--only", "docs", "--only", "format"]), ["format", "docs"]);
-        assert_eq!(names(&["--slow"]).last(), Some(&"slow-tests"));
+        assert_eq!(names(&["--slow"]).last(), Some(&"slow-fuzz"));
         assert!(!names(&[]).contains(&"slow-tests"));
         assert_eq!(names(&["--only", "slow-tests"]), ["slow-tests"]);
         let from = names(&["--from", "licenses", "--keep-going"]);

@@ -4,7 +4,7 @@
 //! machine and in `.ci/run`.
 
 use std::path::Path;
-use std::process::ExitCode;
+use std::process::{Command, ExitCode};
 
 use step::StepError;
 
@@ -13,6 +13,7 @@ mod c_library;
 mod check;
 mod count;
 mod explorer;
+mod fuzz;
 mod guide;
 mod layers;
 mod links;
@@ -40,6 +41,8 @@ usage: cargo xtask COMMAND
   test-python      build the Python package's wheel and run its tests
   tables           write crates/upglow-color/src/tables from tables/*.csv
   header           write bindings/c/include/upglow.h from bindings/c/src
+  memory [UPGLOW]  print the peak memory of each command for pictures of 1, 4 and 16 megapixels in every
+                   format, with this executable or a new one
   bench            run every bench and write docs/PERFORMANCE.md
   install-c DIR    install the C library, its header, and files for pkg-config and CMake below DIR
   site             make target/site/book from the pages of this repository, with mdBook
@@ -79,6 +82,8 @@ fn run(root: &Path, args: &[&str]) -> Result<bool, StepError> {
         ["test-python"] => return Ok(check::run_steps(root, &python_wheel::STEPS, false)),
         ["outputs", program, folder, options @ ..] => return outputs(program, folder, options),
         ["tables"] => tables::write(root)?,
+        ["memory"] => memory(root, None)?,
+        ["memory", program] => memory(root, Some(Path::new(program)))?,
         ["bench"] => bench::run(root)?,
         ["header"] => c_library::write_header(root)?,
         ["install-c", prefix] => {
@@ -108,6 +113,20 @@ fn commands() -> String {
     let lines = HELP.lines().filter_map(|line| line.strip_prefix("  "));
     let names = lines.filter(|line| !line.starts_with(' ')).filter_map(|l| l.split(' ').next());
     names.collect::<Vec<_>>().join(", ")
+}
+
+/// Sides of the pictures that memory is measured with.
+const SIDES: [&str; 3] = ["1024", "2048", "4096"];
+
+fn memory(root: &Path, program: Option<&Path>) -> Result<(), StepError> {
+    let program = match program {
+        Some(program) => program.to_owned(),
+        None => step::release_bin_dir(root)?.join("upglow"),
+    };
+    let mut command = Command::new(python::prepare(root)?);
+    command.arg(root.join("xtask/memory.py")).arg(program);
+    command.arg(step::target_dir(root)?.join("memory")).args(SIDES);
+    step::finish_aloud(command)
 }
 
 fn outputs(program: &str, folder: &str, mut options: &[&str]) -> Result<bool, StepError> {

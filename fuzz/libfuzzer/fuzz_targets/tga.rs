@@ -1,0 +1,2 @@
+#![no_main]
+upglow_libfuzzer::target!("tga");
