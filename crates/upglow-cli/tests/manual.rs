@@ -1,5 +1,4 @@
 //! Manual pages and completions, which packages of the program are made with.
-#![expect(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
 
 mod support;
 
