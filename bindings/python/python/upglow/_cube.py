@@ -586,7 +586,8 @@ class Cube:
         if engine is None:
             return found
         rgb_from_xyz = self._engine(engine).astype(found.dtype)
-        return rgb_from_xyz @ found @ np.linalg.inv(rgb_from_xyz)
+        converted: NDArray[Any] = rgb_from_xyz @ found @ np.linalg.inv(rgb_from_xyz)
+        return converted
 
     def reduced_light(
         self, light: Any = None, *, engine: str | Sequence[float] | None = None
