@@ -95,8 +95,8 @@ NM = np.arange(380.0, 781.0, 5.0)
         (lambda: upglow.Observer((NM, np.ones(81))), "observer: wavelengths of shape (81,) and"),
         (lambda: upglow.Observer((NM[9:], bells(NM[9:]))), "custom: covers 425 to 780 nm, expected"),
         (lambda: upglow.Observer((NM[::2], bells(NM[::2]))), "custom: sample 1: 390 nm after 380 nm"),
-        (lambda: upglow.Observer((NM, -bells(NM))), 'custom: sample 0: -0.0'),
-        (lambda: upglow.Observer((NM - 30, bells(NM))), "custom: sample 0: 0.0"),
+        (lambda: upglow.Observer((NM, -bells(NM))), "custom: sample 0: -4.1"),
+        (lambda: upglow.Observer((NM - 30, bells(NM))), "custom: sample 0: 4.1"),
         (lambda: upglow.Observer((NM, np.ones((81, 3)))), "custom: x, y and z are linearly dependent"),
         (
             lambda: upglow.Contract(
