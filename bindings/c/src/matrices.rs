@@ -4,7 +4,7 @@ use std::ffi::c_char;
 
 use upglow::ReducedTable;
 use upglow_color::rounding::to_single;
-use upglow_color::{Grid, Matrix3, ReducedBasis, RgbSpace};
+use upglow_color::{EngineSpace, Grid, ReducedBasis, RgbSpace};
 
 use crate::colors::{named, named_light};
 use crate::cube::UpglowCube;
@@ -17,8 +17,8 @@ use crate::pointer::{Output, array, assert_shared_by_threads, borrowed, destroy}
 pub struct UpglowMatrices {
     basis: ReducedBasis,
     table: ReducedTable,
-    /// For an engine in an RGB space.
-    rgb_from_xyz: Option<Matrix3>,
+    /// `None` for X, Y, Z.
+    engine: Option<EngineSpace>,
 }
 
 const _: () = assert_shared_by_threads::<UpglowMatrices>();
@@ -52,13 +52,13 @@ pub unsafe extern "C" fn upglow_matrices_create(
         // SAFETY: the same.
         let engine = unsafe { named(engine, "engine", RgbSpace::named)? };
         let basis = ReducedBasis::try_new(cube.cube.contract(), Grid::FIT)?;
-        let rgb_from_xyz = engine.map(|space| basis.rgb_from_xyz(&space)).transpose()?;
+        let engine = engine.map(|space| basis.engine_space(&space)).transpose()?;
         let table = cube.cube.reduced_table(&basis);
-        let table = match rgb_from_xyz {
-            Some(rgb_from_xyz) => table.in_rgb(rgb_from_xyz),
+        let table = match &engine {
+            Some(engine) => table.in_engine(engine),
             None => table,
         };
-        let made = UpglowMatrices { basis, table, rgb_from_xyz };
+        let made = UpglowMatrices { basis, table, engine };
         output.write(Box::into_raw(Box::new(made)));
         Ok(())
     })
@@ -127,7 +127,7 @@ pub unsafe extern "C" fn upglow_reduced_light(
         // SAFETY: the same.
         let named = unsafe { named_light(illuminant)? };
         let numbers = named.map_or(matrices.basis.white(), |light| matrices.basis.light(&light));
-        let numbers = matrices.rgb_from_xyz.map_or(numbers, |rgb| numbers.in_rgb(rgb));
+        let numbers = matrices.engine.map_or(numbers, |engine| engine.light(numbers));
         output.write(numbers.0.map(to_single));
         Ok(())
     })

@@ -87,7 +87,7 @@ pub use matrix::Matrix3;
 pub use metric::{Goal, Metric};
 pub use names::{NameError, is_plain};
 pub use observer::{Observer, ObserverError};
-pub use reduced_basis::{ReducedBasis, ReducedBasisError};
+pub use reduced_basis::{EngineSpace, ReducedBasis, ReducedBasisError};
 pub use reduced_matrix::{ReducedMatrix, Reduction, Xyzu};
 pub use rgb_space::{RgbSpace, RgbSpaceError};
 pub use samples::{Ends, SampleRules, SamplesError};

@@ -4,8 +4,7 @@ use crate::colorimetry::Colorimetry;
 use crate::contract::{Contract, ContractError};
 use crate::grid::Grid;
 use crate::illuminant::Illuminant;
-use crate::matrix::Matrix3;
-use crate::reduced_matrix::{Reduction, Xyzu};
+use crate::reduced_matrix::{ReducedMatrix, Reduction, Xyzu};
 use crate::rgb_space::RgbSpace;
 
 /// Four parts of a contract's light, by which a light given as X, Y, Z and ultraviolet is taken for a spectrum, so
@@ -42,6 +41,26 @@ pub struct ReducedBasis {
     ultraviolet: [Colorimetry; 4],
     ultraviolet_of_daylight: f64,
     reduction: Reduction,
+}
+
+/// The RGB space that an engine keeps light in: linear red, green and blue, each 1 in the contract's light, and U.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
+pub struct EngineSpace {
+    rgb_from_xyz: ReducedMatrix,
+    xyz_from_rgb: ReducedMatrix,
+}
+
+impl EngineSpace {
+    /// Red, green, blue and U of a light: C·v.
+    pub fn light(&self, light: Xyzu) -> Xyzu {
+        self.rgb_from_xyz * light
+    }
+
+    /// The matrix for such lights: C·M·C⁻¹.
+    pub fn matrix(&self, matrix: ReducedMatrix) -> ReducedMatrix {
+        self.rgb_from_xyz * matrix * self.xyz_from_rgb
+    }
 }
 
 /// Why a contract's light has no such parts.
@@ -183,15 +202,18 @@ impl ReducedBasis {
         Xyzu([x, y, z, self.u(seen_by_u(&seen).white().0[0])])
     }
 
-    /// The matrix to linear RGB of an engine that keeps light in `engine`, where red, green and blue are 1 in
-    /// the contract's light. [`Xyzu::in_rgb`] and [`crate::ReducedMatrix::in_rgb`] take it.
+    /// Light and matrices for an engine that keeps light in this RGB space.
     ///
     /// # Errors
     ///
     /// [`ContractError`] if the contract's light and observer do not fit the space.
-    pub fn rgb_from_xyz(&self, engine: &RgbSpace) -> Result<Matrix3, ContractError> {
-        let contract = Contract { space: engine.clone(), ..self.contract.clone() };
-        Ok(Colorimetry::try_new(&contract, self.grid)?.rgb_from_xyz_matrix())
+    pub fn engine_space(&self, space: &RgbSpace) -> Result<EngineSpace, ContractError> {
+        let contract = Contract { space: space.clone(), ..self.contract.clone() };
+        let colorimetry = Colorimetry::try_new(&contract, self.grid)?;
+        Ok(EngineSpace {
+            rgb_from_xyz: ReducedMatrix::of_colors(colorimetry.rgb_from_xyz_matrix()),
+            xyz_from_rgb: ReducedMatrix::of_colors(colorimetry.xyz_from_rgb_matrix()),
+        })
     }
 
     /// The contract's light as four numbers.

@@ -18,13 +18,6 @@ impl Xyzu {
         let [x, y, z, _] = self.0;
         Xyz([x, y, z])
     }
-
-    /// The same light as linear red, green, blue and U: C·v for the matrix of an engine's RGB space, see
-    /// [`crate::ReducedBasis::rgb_from_xyz`].
-    pub fn in_rgb(self, rgb_from_xyz: Matrix3) -> Self {
-        let [r, g, b] = rgb_from_xyz * self.xyz().0;
-        Self([r, g, b, self.0[3]])
-    }
 }
 
 /// How a material acts on light of four numbers, `[outgoing][incident]`, each X, Y, Z, U.
@@ -35,14 +28,10 @@ impl Xyzu {
 pub struct ReducedMatrix(pub [[f64; 4]; 4]);
 
 impl ReducedMatrix {
-    /// The matrix for light as linear red, green, blue and U: C·M·C⁻¹ for the matrix C of an engine's RGB space and its
-    /// inverse, which leave U alone.
-    pub fn in_rgb(self, rgb_from_xyz: Matrix3, xyz_from_rgb: Matrix3) -> Self {
-        let with_u = |Matrix3([a, b, c]): Matrix3| {
-            let [a, b, c] = [a, b, c].map(|[x, y, z]| [x, y, z, 0.0]);
-            [a, b, c, [0.0, 0.0, 0.0, 1.0]]
-        };
-        Self(product(&product(&with_u(rgb_from_xyz), &self.0), &with_u(xyz_from_rgb)))
+    /// A matrix of X, Y, Z that leaves U alone.
+    pub(crate) fn of_colors(Matrix3([a, b, c]): Matrix3) -> Self {
+        let [a, b, c] = [a, b, c].map(|[x, y, z]| [x, y, z, 0.0]);
+        Self([a, b, c, [0.0, 0.0, 0.0, 1.0]])
     }
 }
 

@@ -31,7 +31,7 @@ use self::hash::Hash;
 use self::levels::{LevelRows, Levels};
 use self::maker::{Filled, Maker};
 use self::material::MaterialMaker;
-use self::matrix::{Incident, MatrixMaker};
+use self::matrix::{EngineMatrices, Incident, MatrixMaker};
 use self::output::Output;
 use self::png::{PngBits, PngWriter};
 use self::radiance::RadianceMaker;
@@ -259,6 +259,30 @@ impl<'c> Baker<'c> {
     ///
     /// [`BakeError`] if the cube does not support the form.
     pub fn new(cube: &'c Cube, form: Form, options: BakeOptions) -> Result<Self, BakeError> {
+        Self::sharing(cube, form, options, &mut None)
+    }
+
+    /// One for each form, which share what they compute of the cube.
+    ///
+    /// # Errors
+    ///
+    /// As [`Baker::new`].
+    pub fn of_forms(
+        cube: &'c Cube,
+        forms: &[Form],
+        options: &BakeOptions,
+    ) -> Result<Vec<Self>, BakeError> {
+        let mut latest = None;
+        let each = forms.iter().cloned();
+        each.map(|form| Self::sharing(cube, form, options.clone(), &mut latest)).collect()
+    }
+
+    fn sharing(
+        cube: &'c Cube,
+        form: Form,
+        options: BakeOptions,
+        latest: &mut Option<EngineMatrices>,
+    ) -> Result<Self, BakeError> {
         let (version, cube_hash) = (env!("CARGO_PKG_VERSION"), Hash::of(&cube.to_bytes()));
         let hash = Hash::of(format!("{version} {form:?} {options:?} {cube_hash}").as_bytes());
         let is_polished = form == Form::Material;
@@ -274,7 +298,7 @@ impl<'c> Baker<'c> {
             Form::Spectral { grid, compact: true } => Box::new(CompactMaker::new(cube, grid)?),
             Form::Radiance { light } => Box::new(RadianceMaker::new(cube, light)),
             Form::Matrix { engine, incident } => {
-                Box::new(MatrixMaker::new(cube, engine, incident)?)
+                Box::new(MatrixMaker::new(cube, engine, incident, latest)?)
             }
             Form::Screen { light, exposure_stops, .. } => {
                 Box::new(ScreenMaker::new(cube, &light, exposure_stops))

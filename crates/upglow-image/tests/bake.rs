@@ -247,19 +247,23 @@ fn four_files_hold_the_matrices_of_blends_for_an_engine() {
     const ROUNDING: f64 = 1e-6;
     let basis = ReducedBasis::try_new(cube().contract(), Grid::FIT).unwrap();
     let engine = RgbSpace::named("rec709").unwrap();
-    let rgb_from_xyz = basis.rgb_from_xyz(&engine).unwrap();
-    let xyz_from_rgb = rgb_from_xyz.inverse().unwrap();
+    let space = basis.engine_space(&engine).unwrap();
     let model = ReducedModel::new(cube().model(), &basis);
     let rgb = random_colors(400);
     let desk = Desk::new();
-    for (column, &incident) in Incident::ALL.iter().enumerate() {
-        let form = Form::Matrix { engine: Some(engine.clone()), incident };
-        let path = desk.baked(form, Sample::Float, 20, &rgb);
+    let form = |&incident| Form::Matrix { engine: Some(engine.clone()), incident };
+    let forms: Vec<Form> = Incident::ALL.iter().map(form).collect();
+    let bakers = Baker::of_forms(cube(), &forms, &options(Sample::Float)).unwrap();
+    let input = desk.picture("in.exr", 20, &rgb, None);
+    let bakers = bakers.iter().zip(Incident::ALL).enumerate();
+    for (column, (baker, incident)) in bakers {
+        let path = desk.path("out.exr");
+        baker.bake(&input, &path, &Unwatched).unwrap();
         let found = planes(&path, ["R", "G", "B", "U"]);
         for (texel, rgb) in rgb.iter().enumerate() {
             let color = LinearRgb(rgb.map(f64::from));
             let mixture = cube().lookup(color, Interpolation::Blend).unwrap();
-            let expected = mixture.reduced_matrix(&model).in_rgb(rgb_from_xyz, xyz_from_rgb).0;
+            let expected = space.matrix(mixture.reduced_matrix(&model)).0;
             for (plane, row) in found.iter().zip(expected) {
                 let error = f64::from(plane[texel]) - row[column];
                 assert!(error.abs() < ROUNDING, "{incident:?} {rgb:?} {error}");

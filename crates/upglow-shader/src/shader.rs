@@ -93,15 +93,15 @@ impl Shader {
         name: &str,
     ) -> Result<Self, ShaderError> {
         let basis = ReducedBasis::try_new(cube.contract(), Grid::FIT)?;
-        let rgb_from_xyz = basis.rgb_from_xyz(engine)?;
-        let table = cube.reduced_table(&basis).in_rgb(rgb_from_xyz);
+        let space = basis.engine_space(engine)?;
+        let table = cube.reduced_table(&basis).in_engine(&space);
         let mut subject = format!(
             "Matrices for {}, by which their materials act on light as\nlinear {} and ultraviolet:",
             colors(cube),
             engine.name(),
         );
         for light in [Illuminant::named("A"), Illuminant::named("FL11")].into_iter().flatten() {
-            let numbers = basis.light(&light).in_rgb(rgb_from_xyz).0.map(|v| format!("{v:.4}"));
+            let numbers = space.light(basis.light(&light)).0.map(|v| format!("{v:.4}"));
             // Writing to a string does not fail.
             let _ = write!(subject, "\n{:<5} {}", light.name(), numbers.join(" "));
         }

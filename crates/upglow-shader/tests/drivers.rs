@@ -705,7 +705,7 @@ fn check_matrices(language: Language, test: &str) {
     for (cube, (queries, answers)) in cubes.iter().zip(&answered) {
         assert_eq!(queries.len(), answers.len());
         let basis = ReducedBasis::try_new(cube.contract(), Grid::FIT).unwrap();
-        let table = cube.reduced_table(&basis).in_rgb(basis.rgb_from_xyz(&engine).unwrap());
+        let table = cube.reduced_table(&basis).in_engine(&basis.engine_space(&engine).unwrap());
         for (query, answer) in queries.iter().zip(answers) {
             // What is outside counts as the nearer end, and NaN as 0.
             let inside = query.rgb.map(|v| if v > 0.0 { v.min(1.0) } else { 0.0 });

@@ -139,8 +139,7 @@ impl<'a> Work<'a> {
         recipe: &'a Recipe,
         cube: &'a Cube,
     ) -> Result<Self, Failure> {
-        let baker = |form: &Form| Baker::new(cube, form.clone(), recipe.options.clone());
-        let bakers: Result<Vec<Baker<'_>>, BakeError> = recipe.forms.iter().map(baker).collect();
+        let bakers = Baker::of_forms(cube, &recipe.forms, &recipe.options);
         let bakers = bakers.map_err(|error| refused(error, &args.cube))?;
         let missing = |form: &Form| cube.model().missing_ultraviolet(form.light()?);
         let warned = recipe.forms.iter().map(|form| warn_of_ultraviolet(missing(form)));

@@ -17,6 +17,9 @@ pub(super) struct EngineReport {
     lights: Vec<EngineLight>,
 }
 
+/// The four numbers of light.
+const NUMBERS: [&str; 4] = ["R", "G", "B", "U"];
+
 #[derive(Debug, Serialize)]
 struct EngineLight {
     name: String,
@@ -33,35 +36,32 @@ impl EngineReport {
         let refused =
             |error: &dyn std::error::Error| Failure::option("--engine", error.to_string());
         let basis = ReducedBasis::try_new(contract, Grid::FIT).map_err(|error| refused(&error))?;
-        let rgb_from_xyz = basis.rgb_from_xyz(engine).map_err(|error| refused(&error))?;
-        let xyz_from_rgb = rgb_from_xyz.inverse().expect("the primaries of an RGB space differ");
+        let space = basis.engine_space(engine).map_err(|error| refused(&error))?;
         let matrix = mixture.reduced_matrix(&ReducedModel::new(mixture.model(), &basis));
         let others = lights.iter().filter(|light| light.name() != contract.illuminant.name());
         let light = |light: &Illuminant| EngineLight {
             name: light.name().to_owned(),
-            rgbu: basis.light(light).in_rgb(rgb_from_xyz).0,
+            rgbu: space.light(basis.light(light)).0,
         };
         Ok(Self {
             engine: engine.name().to_owned(),
-            matrix: matrix.in_rgb(rgb_from_xyz, xyz_from_rgb).0,
+            matrix: space.matrix(matrix).0,
             lights: std::iter::once(&contract.illuminant).chain(others).map(light).collect(),
         })
     }
 
     /// Two tables.
     pub(super) fn text(&self) -> String {
-        let four = |numbers: &[f64; 4]| numbers.map(|v| format!("{v:.4}"));
         let row = |name: &str, numbers: &[f64; 4]| {
-            let [r, g, b, u] = four(numbers);
+            let [r, g, b, u] = numbers.map(|v| format!("{v:.4}"));
             [name.to_owned(), r, g, b, u]
         };
         let head = |name| {
-            let numbers = ["R", "G", "B", "U"].map(|number| (number, Side::Right));
-            let [r, g, b, u] = numbers;
+            let [r, g, b, u] = NUMBERS.map(|number| (number, Side::Right));
             [(name, Side::Left), r, g, b, u]
         };
         let mut matrix = Table::new(head("leaves"));
-        for (name, numbers) in ["R", "G", "B", "U"].iter().zip(&self.matrix) {
+        for (name, numbers) in NUMBERS.iter().zip(&self.matrix) {
             matrix.add(row(name, numbers));
         }
         let mut lights = Table::new(head("light"));

@@ -1,5 +1,7 @@
 //! The form of 4×4 matrices: what becomes of one of the four numbers of light.
 
+use std::sync::Arc;
+
 use upglow::{Cube, ReducedTable};
 use upglow_color::{Choice as _, Grid, ReducedBasis, RgbSpace, choices};
 use upglow_fit::BlendKinds;
@@ -39,10 +41,34 @@ choices!(
 #[derive(Debug)]
 pub(super) struct MatrixMaker<'c> {
     cube: &'c Cube,
-    engine: RgbSpace,
+    matrices: EngineMatrices,
     incident: Incident,
-    table: ReducedTable,
     kinds: BlendKinds<'c>,
+}
+
+/// The matrices of a cube for an engine, which makers share.
+#[derive(Clone, Debug)]
+pub(super) struct EngineMatrices {
+    /// The RGB space that the engine keeps light in.
+    engine: RgbSpace,
+    table: Arc<ReducedTable>,
+}
+
+impl EngineMatrices {
+    /// The `latest` ones if they are for this engine; else new ones, which are then the latest.
+    fn of(
+        cube: &Cube,
+        engine: Option<RgbSpace>,
+        latest: &mut Option<Self>,
+    ) -> Result<Self, BakeError> {
+        let engine = engine.unwrap_or_else(|| cube.contract().space.clone());
+        if let Some(known) = latest.as_ref().filter(|known| known.engine == engine) {
+            return Ok(known.clone());
+        }
+        let basis = ReducedBasis::try_new(cube.contract(), Grid::FIT)?;
+        let table = cube.reduced_table(&basis).in_engine(&basis.engine_space(&engine)?);
+        Ok(latest.insert(Self { engine, table: table.into() }).clone())
+    }
 }
 
 /// The name of the form.
@@ -58,12 +84,10 @@ impl<'c> MatrixMaker<'c> {
         cube: &'c Cube,
         engine: Option<RgbSpace>,
         incident: Incident,
+        latest: &mut Option<EngineMatrices>,
     ) -> Result<Self, BakeError> {
-        let engine = engine.unwrap_or_else(|| cube.contract().space.clone());
-        let basis = ReducedBasis::try_new(cube.contract(), Grid::FIT)?;
-        let rgb_from_xyz = basis.rgb_from_xyz(&engine)?;
-        let table = cube.reduced_table(&basis).in_rgb(rgb_from_xyz);
-        Ok(Self { cube, engine, incident, table, kinds: BlendKinds::new(cube) })
+        let matrices = EngineMatrices::of(cube, engine, latest)?;
+        Ok(Self { cube, matrices, incident, kinds: BlendKinds::new(cube) })
     }
 }
 
@@ -74,14 +98,15 @@ impl Maker for MatrixMaker<'_> {
 
     fn attributes(&self) -> Attributes {
         let mut attributes = attributes::data(self.cube, RGBU, CHANNELS);
-        attributes.insert("upglow.engine".into(), self.engine.name().into());
+        attributes.insert("upglow.engine".into(), self.matrices.engine.name().into());
         attributes.insert("upglow.incident".into(), self.incident.name().into());
         attributes
     }
 
     fn fill(&self, rgb: &[[f32; 3]], planes: &mut [&mut [f32]]) -> Filled {
         for (texel, rgb) in rgb.iter().enumerate() {
-            let matrix = self.table.matrix(*rgb).expect("texels outside were repaired or refused");
+            let matrix = self.matrices.table.matrix(*rgb);
+            let matrix = matrix.expect("texels outside were repaired or refused");
             for (plane, row) in planes.iter_mut().zip(matrix) {
                 plane[texel] = row[self.incident as usize];
             }

@@ -1,7 +1,7 @@
 //! 4×4 matrices of looked-up colors.
 
 use upglow_color::rounding::to_single;
-use upglow_color::{Matrix3, ReducedBasis, ReducedMatrix};
+use upglow_color::{EngineSpace, ReducedBasis, ReducedMatrix};
 
 use crate::cube::{Cube, LookupError};
 use crate::material::reduced_model::ReducedModel;
@@ -54,25 +54,19 @@ impl Cube {
 }
 
 impl ReducedTable {
-    /// The same matrices for an engine that keeps light as linear red, green and blue, and U:
-    /// [`ReducedBasis::rgb_from_xyz`] has the matrix of its RGB space.
-    ///
-    /// # Panics
-    ///
-    /// If that matrix has no inverse.
-    pub fn in_rgb(mut self, rgb_from_xyz: Matrix3) -> Self {
-        let xyz_from_rgb = rgb_from_xyz.inverse().expect("the primaries of an RGB space differ");
+    /// The same matrices for an engine that keeps light as linear red, green and blue, and U.
+    pub fn in_engine(mut self, engine: &EngineSpace) -> Self {
         for NodeMatrix(numbers) in &mut self.nodes {
             let (rows, _) = numbers.as_chunks_mut::<4>();
             let matrix = [0, 1, 2, 3].map(|row| rows[row].map(f64::from));
-            let found = ReducedMatrix(matrix).in_rgb(rgb_from_xyz, xyz_from_rgb).0;
+            let found = engine.matrix(ReducedMatrix(matrix)).0;
             rows.iter_mut().zip(found).for_each(|(row, found)| *row = found.map(to_single));
         }
         self
     }
 
     /// The matrix of a color, `[outgoing][incident]`, each X, Y, Z, U (or R, G, B, U after
-    /// [`ReducedTable::in_rgb`]); nothing is allocated.
+    /// [`ReducedTable::in_engine`]); nothing is allocated.
     ///
     /// # Errors
     ///
