@@ -115,7 +115,7 @@ impl<'t> PackedMixture<'t> {
         let root = twice_inverse_root(simd, x.mul_add(x, f32x4::splat(simd, 1.0)));
         let shown = (0.25 * x).mul_add(root, f32x4::splat(simd, 0.5));
         let passed = f32x4::splat(simd, 1.0) - (one + two);
-        at(lambda_nm, sum(weights * passed * shown).clamp(0.0, 1.0))
+        sum(weights * passed * shown).clamp(0.0, 1.0)
     }
 
     /// [`Bispectral::reflectance`] at four wavelengths, nm.
@@ -562,6 +562,9 @@ impl Bispectral for PackedMixture<'_> {
 
     #[inline]
     fn reflectance(&self, lambda_nm: f32) -> f32 {
+        if lambda_nm.is_nan() {
+            return f32::NAN;
+        }
         with_rules!(self, simd, rule => {
             self.reflectance_through(simd, lambda_nm, self.absorbed(simd, rule, lambda_nm))
         })
@@ -581,34 +584,37 @@ impl Bispectral for PackedMixture<'_> {
 
     #[inline]
     fn reradiation_per_nm(&self, in_nm: f32, out_nm: f32) -> f32 {
-        if !self.fluorescent {
-            return at(in_nm, at(out_nm, 0.0));
+        if in_nm.is_nan() || out_nm.is_nan() {
+            return f32::NAN;
         }
-        at(
-            in_nm,
-            at(
-                out_nm,
-                with_rules!(self, simd, rule => {
-                    self.moved(simd, self.returned(simd, rule, in_nm), self.emission(simd, rule, out_nm))
-                }),
-            ),
-        )
+        if !self.fluorescent {
+            return 0.0;
+        }
+        with_rules!(self, simd, rule => {
+            self.moved(simd, self.returned(simd, rule, in_nm), self.emission(simd, rule, out_nm))
+        })
     }
 
     #[inline]
     fn albedo(&self, in_nm: f32) -> f32 {
+        if in_nm.is_nan() {
+            return f32::NAN;
+        }
         with_rules!(self, simd, rule => {
             let absorbed = self.absorbed(simd, rule, in_nm);
             let [one, two] = self.returned_of(simd, rule, in_nm, absorbed);
             let weights = load(simd, &self.weights);
             let reflectance = self.reflectance_through(simd, in_nm, absorbed);
             // One number rounded up can exceed 1.
-            (reflectance + sum(weights * (one + two))).clamp(0.0, 1.0)
+            (reflectance + sum(weights * (one + two))).min(1.0)
         })
     }
 
     #[inline]
     fn sample_incident(&self, out_nm: f32, u: [f32; 2]) -> Option<Sample<f32>> {
+        if out_nm.is_nan() {
+            return None;
+        }
         with_rules!(self, simd, rule => {
             let emission = self.emission(simd, rule, out_nm);
             let shares = self.leaving(simd, rule, out_nm, emission);
@@ -631,35 +637,35 @@ impl Bispectral for PackedMixture<'_> {
 
     #[inline]
     fn incident_pdf_per_nm(&self, in_nm: f32, out_nm: f32) -> f32 {
-        if !self.fluorescent {
-            return at(in_nm, at(out_nm, 0.0));
+        if in_nm.is_nan() || out_nm.is_nan() {
+            return f32::NAN;
         }
-        at(
-            in_nm,
-            at(
-                out_nm,
-                with_rules!(self, simd, rule => {
-                    let emission = self.emission(simd, rule, out_nm);
-                    let drawn = self.moved(simd, self.proposed(simd, rule, in_nm), emission);
-                    ratio(drawn, self.leaving(simd, rule, out_nm, emission).total())
-                }),
-            ),
-        )
+        if !self.fluorescent {
+            return 0.0;
+        }
+        with_rules!(self, simd, rule => {
+            let emission = self.emission(simd, rule, out_nm);
+            let drawn = self.moved(simd, self.proposed(simd, rule, in_nm), emission);
+            ratio(drawn, self.leaving(simd, rule, out_nm, emission).total())
+        })
     }
 
     #[inline]
     fn incident_elastic_probability(&self, out_nm: f32) -> f32 {
-        at(
-            out_nm,
-            with_rules!(self, simd, rule => {
-                let shares = self.leaving(simd, rule, out_nm, self.emission(simd, rule, out_nm));
-                ratio(shares.elastic, shares.total())
-            }),
-        )
+        if out_nm.is_nan() {
+            return f32::NAN;
+        }
+        with_rules!(self, simd, rule => {
+            let shares = self.leaving(simd, rule, out_nm, self.emission(simd, rule, out_nm));
+            ratio(shares.elastic, shares.total())
+        })
     }
 
     #[inline]
     fn sample_outgoing(&self, in_nm: f32, u: [f32; 2]) -> Option<Sample<f32>> {
+        if in_nm.is_nan() {
+            return None;
+        }
         with_rules!(self, simd, rule => {
             let (returned, shares) = self.arriving(simd, rule, in_nm);
             let total = shares.total();
@@ -677,30 +683,27 @@ impl Bispectral for PackedMixture<'_> {
 
     #[inline]
     fn outgoing_pdf_per_nm(&self, in_nm: f32, out_nm: f32) -> f32 {
-        if !self.fluorescent {
-            return at(in_nm, at(out_nm, 0.0));
+        if in_nm.is_nan() || out_nm.is_nan() {
+            return f32::NAN;
         }
-        at(
-            in_nm,
-            at(
-                out_nm,
-                with_rules!(self, simd, rule => {
-                    let (returned, shares) = self.arriving(simd, rule, in_nm);
-                    ratio(self.moved(simd, returned, self.emission(simd, rule, out_nm)), shares.total())
-                }),
-            ),
-        )
+        if !self.fluorescent {
+            return 0.0;
+        }
+        with_rules!(self, simd, rule => {
+            let (returned, shares) = self.arriving(simd, rule, in_nm);
+            ratio(self.moved(simd, returned, self.emission(simd, rule, out_nm)), shares.total())
+        })
     }
 
     #[inline]
     fn outgoing_elastic_probability(&self, in_nm: f32) -> f32 {
-        at(
-            in_nm,
-            with_rules!(self, simd, rule => {
-                let (_, shares) = self.arriving(simd, rule, in_nm);
-                ratio(shares.elastic, shares.total())
-            }),
-        )
+        if in_nm.is_nan() {
+            return f32::NAN;
+        }
+        with_rules!(self, simd, rule => {
+            let (_, shares) = self.arriving(simd, rule, in_nm);
+            ratio(shares.elastic, shares.total())
+        })
     }
 }
 
@@ -719,20 +722,14 @@ fn within_range<S: Simd>(nm: f32x4<S>) -> f32x4<S> {
     nm.max(0.0).min(FARTHEST_NM)
 }
 
-/// The value at a wavelength, nm; NaN if that is NaN.
-#[inline(always)]
-fn at(nm: f32, value: f32) -> f32 {
-    if nm.is_nan() { f32::NAN } else { value }
-}
-
-/// [`at`] of four shares.
+/// Four shares at wavelengths, nm; NaN where those are NaN.
 #[inline(always)]
 fn at_four<S: Simd>(simd: S, nm: &[f32; 4], shares: f32x4<S>) -> f32x4<S> {
     let nm = f32x4::from_slice(simd, nm);
     nm.simd_eq(nm).select(shares.max(0.0).min(1.0), f32x4::splat(simd, f32::NAN))
 }
 
-/// [`at`] of eight shares.
+/// Eight shares at wavelengths, nm; NaN where those are NaN.
 #[inline(always)]
 fn at_eight<S: Simd>(simd: S, low_nm: &[f32; 4], high_nm: &[f32; 4], shares: f32x8<S>) -> f32x8<S> {
     let nm = f32x4::from_slice(simd, low_nm).combine(f32x4::from_slice(simd, high_nm));
