@@ -52,7 +52,7 @@ EXPOSURE = {"daylight": 0.9, "tungsten": 0.9, "ultraviolet": 0.9, "all": 0.45}
 WHITE = 0.8
 # Of what the whole lamp brings: surfaces with less are in its shadow, and are not compared.
 LEAST_LIGHT = 0.05
-# Least share of ultraviolet that comes back as visible light, of a texel that counts as fluorescent.
+# The least share of ultraviolet that a texel returns as visible light to count as fluorescent.
 LEAST_GLOW = 0.01
 # Greatest difference of normals in 3 by 3 pixels that are not at an edge. There passes are averages over
 # several surfaces, whose product is not the average of the products.

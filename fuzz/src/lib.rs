@@ -49,7 +49,7 @@ pub const TARGETS: [Target; 14] = [
 ///
 /// # Panics
 ///
-/// If there is none, or it found a fault.
+/// If no target has this name, or the target finds a fault.
 pub fn run(name: &str, bytes: &[u8]) {
     let target = TARGETS.iter().find(|target| target.name == name);
     (target.expect("a target of the list").run)(bytes);

@@ -35,7 +35,7 @@ pub fn check_output(path: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Checks that files can be written beside an output: that it is none of a device or pipe.
+/// Checks that files can be written beside an output: that it is no device or pipe.
 pub fn check_has_place(path: &Path) -> Result<(), Failure> {
     match path.metadata() {
         Ok(found) if !found.is_file() => {

@@ -8,7 +8,7 @@ use upglow_color::rounding::to_single;
 use crate::problem::parabola::{UNIT_NM, edge_of, scaled};
 use crate::problem::single_sums::CHART_NM;
 
-/// A node that is prepared when a texel needs it first: small pictures need few. One cache line.
+/// A node that is prepared when a texel first needs it, because small pictures need few. One cache line.
 #[derive(Debug, Default)]
 #[repr(align(64))]
 pub(super) struct Slot(OnceLock<Corner>);
