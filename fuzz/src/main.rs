@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 use upglow_fuzz::{Mutator, Random, TARGETS, Target};
 use upglow_image::ExrReader;
 
-const USAGE: &str = "expected --seconds N, --seed N and names of targets";
+const USAGE: &str = "expected --seconds N, --executions N, --seed N and names of targets";
 /// A run that takes longer is a fault: files of the corpus take milliseconds.
 const MOST_TIME: Duration = Duration::from_secs(20);
 /// Faults of one target that are kept; more are the same ones again.
@@ -21,17 +21,21 @@ const MOST_FAULTS: usize = 10;
 /// What to run, and for how long.
 struct Plan {
     targets: Vec<Target>,
+    /// Each target runs until this time is over or this many executions are done.
     time: Duration,
+    most_runs: u64,
     seed: u64,
 }
 
 fn plan(args: impl Iterator<Item = String>) -> Result<Plan, String> {
-    let mut plan = Plan { targets: Vec::new(), time: Duration::from_secs(10), seed: 1 };
+    let time = Duration::from_secs(10);
+    let mut plan = Plan { targets: Vec::new(), time, most_runs: u64::MAX, seed: 1 };
     let mut args = args.peekable();
     while let Some(arg) = args.next() {
         let mut number = || args.next().and_then(|text| text.parse().ok()).ok_or(USAGE);
         match &*arg {
             "--seconds" => plan.time = Duration::from_secs(number()?),
+            "--executions" => plan.most_runs = number()?,
             "--seed" => plan.seed = number()?,
             name => {
                 let target = TARGETS.iter().find(|target| target.name == name);
@@ -47,8 +51,10 @@ fn plan(args: impl Iterator<Item = String>) -> Result<Plan, String> {
 }
 
 /// What became of one target.
+#[derive(Default)]
 struct Outcome {
     runs: u64,
+    time: Duration,
     slowest: Duration,
     faults: usize,
 }
@@ -74,7 +80,10 @@ fn main() -> ExitCode {
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let (next, faults) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let running: Vec<Running> = (0..threads).map(|_| Mutex::new(None)).collect();
-    println!("{:<13} {:>12} {:>11} {:>7}", "target", "executions", "slowest", "faults");
+    println!(
+        "{:<13} {:>12} {:>8} {:>11} {:>7}",
+        "target", "executions", "time", "slowest", "faults"
+    );
     std::thread::scope(|scope| {
         let workers: Vec<_> = running
             .iter()
@@ -83,10 +92,13 @@ fn main() -> ExitCode {
                     while let Some(target) = plan.targets.get(next.fetch_add(1, Ordering::Relaxed))
                     {
                         let found = attack(target, &plan, running);
-                        let Outcome { runs, slowest, faults: count } = found;
+                        let Outcome { runs, time, slowest, faults: count } = found;
                         faults.fetch_add(count, Ordering::Relaxed);
-                        let slowest = slowest.as_secs_f64() * 1e3;
-                        println!("{:<13} {runs:>12} {slowest:>8.1} ms {count:>7}", target.name);
+                        let (time, slowest) = (time.as_secs(), slowest.as_millis());
+                        println!(
+                            "{:<13} {runs:>12} {time:>6} s {slowest:>8} ms {count:>7}",
+                            target.name
+                        );
                     }
                 })
             })
@@ -116,9 +128,10 @@ fn attack(target: &Target, plan: &Plan, running: &Running) -> Outcome {
     let files = corpus(target.name);
     let mut mutator = Mutator::new(files, Random::new(plan.seed));
     let start = Instant::now();
-    let mut outcome = Outcome { runs: 0, slowest: Duration::ZERO, faults: 0 };
+    let mut outcome = Outcome::default();
     let mut messages = BTreeSet::new();
-    while start.elapsed() < plan.time && messages.len() < MOST_FAULTS {
+    let goes_on = |runs| runs < plan.most_runs && start.elapsed() < plan.time;
+    while goes_on(outcome.runs) && messages.len() < MOST_FAULTS {
         let bytes = mutator.next_file();
         let from = Instant::now();
         if let Ok(mut running) = running.lock() {
@@ -142,6 +155,7 @@ fn attack(target: &Target, plan: &Plan, running: &Running) -> Outcome {
     if let Ok(mut running) = running.lock() {
         *running = None;
     }
+    outcome.time = start.elapsed();
     outcome
 }
 

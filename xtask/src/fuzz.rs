@@ -1,10 +1,10 @@
 //! Altered files, which readers must refuse or read: the targets of `fuzz`.
 
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Command;
 use std::sync::Mutex;
 
-use crate::step::{Step, StepError, cargo, finish, finish_aloud};
+use crate::step::{Step, StepError, cargo, finish, finish_aloud, nightly_cargo};
 
 /// What `cargo xtask check` does about it.
 pub(crate) const STEPS: [Step; 1] =
@@ -34,27 +34,13 @@ fn on_any_compiler(root: &Path, seconds: u64) -> Result<(), StepError> {
     finish_aloud(cargo(root, &format!("run --quiet --package upglow-fuzz -- --seconds {seconds}")))
 }
 
-/// Cargo of a nightly compiler, whatever compiler runs this.
-fn nightly(root: &Path) -> Command {
-    let mut command = Command::new("cargo");
-    command.args(["+nightly", "fuzz"]).env_remove("CARGO").env_remove("RUSTUP_TOOLCHAIN");
-    command.current_dir(root).stdin(Stdio::null());
-    command
-}
-
 /// Runs the targets with libFuzzer, on all processors; where it is not installed, only says so.
 fn with_coverage(root: &Path, seconds: u64) -> Result<(), StepError> {
-    let mut version = nightly(root);
-    version.arg("--version");
-    if finish(version).is_err() {
+    if finish(nightly_cargo(root, "fuzz --version")).is_err() {
         println!("check: fuzz: no nightly compiler with cargo-fuzz, so without coverage");
         return Ok(());
     }
-    let mut build = nightly(root);
-    finish({
-        build.args(["build", "--fuzz-dir", "fuzz/libfuzzer"]);
-        build
-    })?;
+    finish(nightly_cargo(root, "fuzz build --fuzz-dir fuzz/libfuzzer"))?;
     let waiting = Mutex::new(targets(root)?);
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let next = || waiting.lock().ok().and_then(|mut names| names.pop());
@@ -88,8 +74,8 @@ fn targets(root: &Path) -> Result<Vec<String>, StepError> {
 fn run(root: &Path, name: &str, seconds: u64) -> Result<Command, StepError> {
     let found = root.join("target/fuzz-found").join(name);
     std::fs::create_dir_all(&found).map_err(StepError::file(&found))?;
-    let mut command = nightly(root);
-    command.args(["run", "--fuzz-dir", "fuzz/libfuzzer", name]).arg(&found);
+    let mut command = nightly_cargo(root, "fuzz run --fuzz-dir fuzz/libfuzzer");
+    command.arg(name).arg(&found);
     command.arg(root.join("fuzz/corpus").join(name));
     command.args(["--", "-timeout=20", "-rss_limit_mb=4096"]);
     command.arg(format!("-max_total_time={seconds}"));

@@ -45,6 +45,7 @@ usage: cargo xtask COMMAND
                    format, with this executable or a new one
   bench            run every bench and write docs/PERFORMANCE.md
   install-c DIR    install the C library, its header, and files for pkg-config and CMake below DIR
+      --libdir LIB     with the libraries in DIR/LIB, for example lib/x86_64-linux-gnu, instead of DIR/lib
   site             make target/site/book from the pages of this repository, with mdBook
   sbom FILE        write the packages of Cargo.lock to FILE as a CycloneDX document
   count [FOLDER]   count source lines, public names and the program's crates, here or in FOLDER
@@ -86,8 +87,17 @@ fn run(root: &Path, args: &[&str]) -> Result<bool, StepError> {
         ["memory", program] => memory(root, Some(Path::new(program)))?,
         ["bench"] => bench::run(root)?,
         ["header"] => c_library::write_header(root)?,
-        ["install-c", prefix] => {
-            let installed = c_library::install(root, Path::new(prefix))?;
+        ["install-c", prefix, options @ ..] => {
+            let lib = match options {
+                [] => c_library::LIB,
+                ["--libdir", lib] => lib,
+                _ => {
+                    return Err(StepError::Usage(
+                        "install-c: expected DIR, and --libdir LIB".into(),
+                    ));
+                }
+            };
+            let installed = c_library::install(root, Path::new(prefix), lib)?;
             println!("install-c: {}, {}", installed.include.display(), installed.lib.display());
         }
         ["site"] => println!("site: {}", site::build(root)?.join("index.html").display()),

@@ -87,6 +87,14 @@ pub(crate) fn cargo(root: &Path, args: &str) -> Command {
     command
 }
 
+/// Cargo of a nightly compiler, whatever compiler runs this; `args` begin with the command that need not be installed.
+pub(crate) fn nightly_cargo(root: &Path, args: &str) -> Command {
+    let mut command = Command::new("cargo");
+    command.arg("+nightly").args(args.split(' ')).env_remove("CARGO");
+    command.env_remove("RUSTUP_TOOLCHAIN").current_dir(root).stdin(Stdio::null());
+    command
+}
+
 /// Runs a command silently; its output appears only if it fails.
 pub(crate) fn finish(command: Command) -> Result<(), StepError> {
     output_of(command).map(|_| ())

@@ -6,7 +6,7 @@ use std::ffi::{CStr, c_char};
 /// with the second.
 pub const UPGLOW_VERSION_MAJOR: u32 = 0;
 /// Second number of the version that this header describes.
-pub const UPGLOW_VERSION_MINOR: u32 = 1;
+pub const UPGLOW_VERSION_MINOR: u32 = 2;
 /// Third number of the version that this header describes.
 pub const UPGLOW_VERSION_PATCH: u32 = 0;
 
@@ -16,7 +16,7 @@ const VERSION: &CStr =
         Err(_) => panic!("a version has no zero byte"),
     };
 
-/// The version of the library that is linked, such as "0.1.0". The text is valid until the program
+/// The version of the library that is linked, such as "0.2.0". The text is valid until the program
 /// ends.
 #[unsafe(no_mangle)]
 pub extern "C" fn upglow_version() -> *const c_char {

@@ -24,6 +24,7 @@ use upglow_terminal::{Console, Threads, count, in_range, word};
 pub(crate) use build::{
     BuildArgs, ContractArgs, FitArgs, ModelArgs, ModelName, SlopeLimits, limit_text,
 };
+use cube_first::NamedCube;
 pub(crate) use cube_first::with_cube_first;
 #[cfg(feature = "explore")]
 pub(crate) use explore::{BuildWords, ExploreArgs};
@@ -152,6 +153,8 @@ pub(crate) struct MovedArgs {
 pub(crate) struct InspectArgs {
     /// Cube made by `upglow build`, or coefficient table of any program (.coeff)
     pub(crate) file: PathBuf,
+    #[command(flatten)]
+    _named_cube: NamedCube,
     /// RGB space of a coefficient table, which does not store it: a name or eight numbers, as for
     /// `upglow build`
     #[arg(long, value_parser = rgb_space)]
@@ -172,6 +175,8 @@ pub(crate) struct VerifyArgs {
     /// Cube made by `upglow build`
     #[arg(value_name = "CUBE")]
     pub(crate) file: PathBuf,
+    #[command(flatten)]
+    _named_cube: NamedCube,
     /// Number of random colors to try between the nodes
     #[arg(long, default_value = "1000000", value_name = "N", value_parser = count::<usize>)]
     pub(crate) points: usize,
@@ -191,6 +196,8 @@ pub(crate) struct ColorArgs {
     /// Cube made by `upglow build`
     #[arg(value_name = "CUBE")]
     pub(crate) file: PathBuf,
+    #[command(flatten)]
+    _named_cube: NamedCube,
     /// Linear red in the RGB space of the cube, 0 to 1; up to 10 with --direct, --kind or --known
     #[arg(value_name = "R", allow_hyphen_values = true)]
     pub(crate) red: String,
@@ -250,6 +257,8 @@ pub(crate) struct ExportArgs {
     /// Cube made by `upglow build`
     #[arg(value_name = "CUBE")]
     pub(crate) file: PathBuf,
+    #[command(flatten)]
+    _named_cube: NamedCube,
     /// The file to write, where it is not given by --output
     #[arg(value_name = "OUTPUT", required_unless_present = "output")]
     named: Option<PathBuf>,

@@ -156,6 +156,7 @@ fn every_command_prints_what_the_schema_says() {
         ("read", "read bands.exr --at 1,1"),
         ("read", "read material.exr --at 1,1"),
         ("fit-matrix", "fit-matrix bands.exr --at 1,1 -o fitted --plot fitted.svg"),
+        ("fit-matrix", "fit-matrix bands.exr --at 100,20 -o glowing"),
     ] {
         check(&folder, &schema, definition, line);
     }
@@ -168,6 +169,28 @@ fn every_command_prints_what_the_schema_says() {
         let columns: Vec<&str> = rows.map(|cell| cell.trim().trim_matches('`')).collect();
         assert_eq!(header, columns.join(","), "{file}");
     }
+}
+
+#[cfg(all(feature = "explore", unix))]
+#[test]
+fn the_explorer_prints_its_address_as_the_schema_says() {
+    use std::io::BufRead as _;
+
+    let folder = Folder::new();
+    folder.done("build --resolution 2 -o cube");
+    let mut child = std::process::Command::new(support::program())
+        .args(["--json", "explore", "cube", "--no-open"])
+        .current_dir(folder.path())
+        .env("TMPDIR", folder.path())
+        .stdout(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut line = String::new();
+    std::io::BufReader::new(child.stdout.take().unwrap()).read_line(&mut line).unwrap();
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let document = serde_json::from_str(&line).unwrap();
+    assert_eq!(Schema::read().faults("explore", &document), [""; 0]);
 }
 
 #[test]

@@ -114,6 +114,54 @@ fn a_full_device_and_a_full_disk_give_the_same_line_in_every_command() {
     assert!(!Path::new("/dev/full").metadata().unwrap().is_file());
 }
 
+/// Runs the program as a user whom rights hold for: as another one if this is root. `None` if that is not allowed.
+#[expect(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
+fn run_with_few_rights(folder: &Folder, words: &str) -> Option<(i32, String)> {
+    use std::os::unix::fs::MetadataExt as _;
+    use std::os::unix::process::CommandExt as _;
+
+    const NOBODY: u32 = 65534;
+    let mut command = Command::new(program());
+    if Path::new("/proc/self").metadata().unwrap().uid() == 0 {
+        command.uid(NOBODY).gid(NOBODY);
+    }
+    let output = command.args(words.split(' ')).current_dir(folder.path()).output().ok()?;
+    Some((output.status.code().unwrap_or(-1), String::from_utf8(output.stderr).unwrap()))
+}
+
+#[test]
+fn without_the_right_to_write_every_command_gives_one_line_and_changes_nothing() {
+    let folder = folder_with_picture();
+    // A folder of a test is its user's alone.
+    let rights = |path: &Path, mode| {
+        std::fs::set_permissions(path, PermissionsExt::from_mode(mode)).unwrap();
+    };
+    let closed = folder.path().join("closed");
+    folder.write("closed/old", "old");
+    rights(folder.path(), 0o755);
+    rights(&closed, 0o555);
+    let others = ["bake cube cube.exr -o OUT.exr", "examples -o OUT", "man -o OUT"];
+    for writer in WRITERS.into_iter().chain(others) {
+        for name in ["closed/new", "closed/old"] {
+            if name == "closed/old" && others.contains(&writer) {
+                continue;
+            }
+            let Some((status, stderr)) = run_with_few_rights(&folder, &of(writer, name)) else {
+                eprintln!("skipped: no program may be run as another user");
+                return;
+            };
+            assert_eq!(status, 1, "{writer}: {stderr}");
+            let last = stderr.lines().last().unwrap_or_default();
+            let line = one_line(&format!("{last}\n"));
+            assert!(line.starts_with(name), "{writer}: {line}");
+            assert!(line.contains(": permission denied, expected "), "{writer}: {line}");
+        }
+    }
+    rights(&closed, 0o755);
+    assert_eq!(folder.read("closed/old"), b"old");
+    assert_eq!(closed.read_dir().unwrap().count(), 1);
+}
+
 #[test]
 fn links_are_followed_and_modes_are_kept() {
     let folder = folder_with_picture();

@@ -11,6 +11,7 @@ mod choices;
 mod drop_routes;
 mod drops;
 mod explain;
+mod folder;
 mod guard;
 mod locked;
 mod planner;
@@ -33,7 +34,6 @@ use hyper::server::conn::http1;
 use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::service::TowerToHyperService;
 use serde_json::json;
-use tempfile::TempDir;
 use tokio::net::TcpStream;
 use tokio::runtime::Runtime;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
@@ -44,6 +44,7 @@ use self::answer::{Refusal, binary, of_type, work};
 use self::builds::{Builds, Job, Order};
 use self::drops::Drops;
 use self::explain::Question;
+use self::folder::PrivateFolder;
 use self::guard::{Guard, guarded};
 use self::shelf::{Held, Shelf};
 use crate::cube_data::ExplorerError;
@@ -101,7 +102,7 @@ pub struct Server {
     listener: tokio::net::TcpListener,
     pool: rayon::ThreadPool,
     /// Where dropped files are; removed at the end.
-    folder: TempDir,
+    folder: PrivateFolder,
     // Last, because what it runs uses the others.
     runtime: Runtime,
 }
@@ -141,7 +142,7 @@ impl Server {
             let _context = runtime.enter();
             tokio::net::TcpListener::from_std(listener)?
         };
-        let folder = private_folder()?;
+        let folder = PrivateFolder::new()?;
         let shared = Arc::new(Shared {
             page: page.into(),
             shelf: Shelf::new(Held::new(0, cube, name)?),
@@ -177,17 +178,6 @@ impl Server {
         runtime.shutdown_timeout(END_TIME);
         folder.close()
     }
-}
-
-/// A new folder for this user alone, in the system's temporary one.
-fn private_folder() -> io::Result<TempDir> {
-    let mut builder = tempfile::Builder::new();
-    #[cfg(unix)]
-    let builder = {
-        use std::os::unix::fs::PermissionsExt as _;
-        builder.permissions(std::fs::Permissions::from_mode(0o700))
-    };
-    builder.prefix("upglow-explore-").tempdir()
 }
 
 async fn accept(

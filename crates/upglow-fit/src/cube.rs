@@ -129,11 +129,10 @@ impl<'w> Stage<'w> {
     }
 
     fn batch<T>(&self, range: Range<usize>, work: impl Fn(usize) -> T) -> Option<Vec<T>> {
-        if self.watch.stopped() {
-            return None;
-        }
         let finished = range.len();
-        let results = range.map(work).collect();
+        // A node of an exhaustive search takes a second.
+        let results = range.map(|node| (!self.watch.stopped()).then(|| work(node)));
+        let results = results.collect::<Option<Vec<T>>>()?;
         let done = self.done.fetch_add(finished, Ordering::Relaxed) + finished;
         self.watch.progress(Progress { stage: self.name, done, total: self.total });
         Some(results)

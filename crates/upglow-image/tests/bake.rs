@@ -8,8 +8,8 @@ use std::sync::OnceLock;
 
 use tempfile::TempDir;
 use upglow::{
-    Accounting, Cube, DyeModel, DyeOptions, DyeSet, FilmModel, Fluorescence, Interpolation,
-    Material, Mixture, Model, ModelOnGrid, Node, QuantumYield, ReducedModel,
+    Accounting, AnalyticModel, Cube, DyeModel, DyeOptions, DyeSet, FilmModel, Fluorescence,
+    Interpolation, Material, Mixture, Model, ModelOnGrid, Node, QuantumYield, ReducedModel,
 };
 use upglow_color::{
     Choice as _, Colorimetry, Contract, Grid, Illuminant, LinearRgb, ReducedBasis, RgbSpace, Xyz,
@@ -705,6 +705,28 @@ fn films_are_baked_as_the_materials_of_the_polisher_and_read_back() {
             ));
         }
         assert!(pairs > 30, "only {pairs} films of two dyes");
+    }
+}
+
+#[test]
+fn materials_without_fluorescence_are_read_back_as_such_for_every_model() {
+    let analytic = Model::Analytic(AnalyticModel::default());
+    let options = Preset::Jung2019.options();
+    let analytic = build_cube(&Contract::default(), &analytic, options, 4, &Unwatched).unwrap();
+    let reflectances = Preset::Jakob2019.options();
+    let reflectances =
+        build_cube(&Contract::default(), &Model::Reflectance, reflectances, 4, &Unwatched);
+    let cubes = [reflectances.unwrap(), built("konig8", 4), film("konig8", 4), analytic];
+    let (desk, rgb) = (Desk::new(), random_colors(200));
+    for cube in &cubes {
+        for form in [POLISHED, Form::InterpolatedMaterial] {
+            for sample in [Sample::Half, Sample::Float] {
+                let read = materials(&desk.baked_with(cube, form.clone(), sample, 1, &rgb));
+                let is_dark = |material: &&Material| material.fluorescence == Fluorescence::None;
+                let dark = read.iter().filter(is_dark).count();
+                assert!(dark > 0, "{}: every texel fluoresces", cube.model().name());
+            }
+        }
     }
 }
 

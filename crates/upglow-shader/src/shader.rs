@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use upglow::{Accounting, AnalyticModel, Cube, FARTHEST_NM, FilmModel, Model};
 use upglow_color::rounding::to_single;
-use upglow_color::{Grid, Illuminant, ReducedBasis, RgbSpace};
+use upglow_color::{Grid, Illuminant, MeasuredDye, ReducedBasis, RgbSpace};
 
 use crate::error::ShaderError;
 use crate::javascript::module;
@@ -197,15 +197,29 @@ fn heading(
         contract.observer.name()
     ));
     line(&format!("Reads {}; checksum {checksum:016x}.", names.join(", ")));
+    if let Some(dyes) = cube.model().dyes() {
+        line(
+            "The license above is that of this code. The curves that it reads keep the terms of their dyes:",
+        );
+        dyes.set().dyes().iter().for_each(|dye| line(&terms(dye)));
+    }
     binding(language, has_curves).lines().for_each(line);
     text.push('\n');
     text
 }
 
+/// The name of a dye, and whose it is.
+fn terms(dye: &MeasuredDye) -> String {
+    match dye.provenance.as_str() {
+        "" => format!("{}, terms not stated", dye.name),
+        provenance => format!("{}: {provenance}", dye.name),
+    }
+}
+
 /// Words as a comment of one line holds them: names from a cube may have signs that end a comment, continue it on the
 /// next line or close the element of a page that the code is in; `_` stands for those.
 fn in_comment(words: &str) -> String {
-    let is_word = |c: char| c.is_alphanumeric() || " .,;:-_+()'°×".contains(c);
+    let is_word = |c: char| c.is_alphanumeric() || " .,;:/-_+()'°×".contains(c);
     words.chars().map(|c| if is_word(c) { c } else { '_' }).collect()
 }
 

@@ -87,6 +87,12 @@ pub fn unwritten(path: &Path, error: &io::Error) -> Failure {
 
 /// Creates a folder, and missing ones above it.
 pub fn make_folder(path: &Path) -> Result<(), Failure> {
+    if path.exists() && !path.is_dir() {
+        return Err(Failure::file(
+            path,
+            "no folder, expected one to write in, or a name that is free",
+        ));
+    }
     std::fs::create_dir_all(path)
         .map_err(|error| Failure::system(path, &error, "a folder to write in"))
 }

@@ -61,8 +61,12 @@ fn series() -> &'static str {
     &VERSION[..end]
 }
 
-/// Builds the library and installs it below `prefix`; each file appears whole.
-pub(crate) fn install(root: &Path, prefix: &Path) -> Result<Installed, StepError> {
+/// Where libraries are below a prefix, if nothing else is said.
+pub(crate) const LIB: &str = "lib";
+
+/// Builds the library and installs it below `prefix`, libraries in the folder `lib` there; each file appears whole.
+pub(crate) fn install(root: &Path, prefix: &Path, lib: &str) -> Result<Installed, StepError> {
+    let depth = depth_of(lib)?;
     let names = SharedNames::of_this_system().ok_or_else(|| {
         let os = std::env::consts::OS;
         StepError::found(format!("system {os}, expected linux or macos"))
@@ -72,8 +76,9 @@ pub(crate) fn install(root: &Path, prefix: &Path) -> Result<Installed, StepError
     build_shared(root, &names)?;
     let prefix = std::path::absolute(prefix).map_err(StepError::file(prefix))?;
     let installed =
-        Installed { include: prefix.join("include"), lib: prefix.join("lib"), native_libraries };
+        Installed { include: prefix.join("include"), lib: prefix.join(lib), native_libraries };
     let source = root.join(FOLDER);
+    let folder_of_libraries = lib;
     let lib = &installed.lib;
     place(&source.join("include/upglow.h"), &installed.include.join("upglow.h"))?;
     for text in LICENSES {
@@ -91,10 +96,24 @@ pub(crate) fn install(root: &Path, prefix: &Path) -> Result<Installed, StepError
     alias(&names.soname, &lib.join(&names.link))?;
     for (template, folder) in PACKAGING {
         let text = read(&source.join("packaging").join(format!("{template}.in")))?;
+        let up = vec![".."; depth + folder.split('/').count()].join("/");
+        let text = text.replace("@UP@", &up).replace("@LIB@", folder_of_libraries);
         let text = filled(&text, &names, &installed.native_libraries);
         put(&lib.join(folder).join(template), |path| fs::write(path, &text))?;
     }
     Ok(installed)
+}
+
+/// How many folders deep a folder below the prefix is.
+fn depth_of(lib: &str) -> Result<usize, StepError> {
+    let parts: Vec<_> = Path::new(lib).components().collect();
+    let is_below = parts.iter().all(|part| matches!(part, std::path::Component::Normal(_)));
+    if parts.is_empty() || !is_below {
+        return Err(StepError::Usage(format!(
+            "--libdir {lib}, expected a folder below DIR, as lib64"
+        )));
+    }
+    Ok(parts.len())
 }
 
 /// The terms of the code and of the tables in it.
@@ -192,12 +211,22 @@ mod tests {
     }
 
     #[test]
+    fn libraries_are_installed_below_the_prefix() {
+        assert_eq!(depth_of("lib").unwrap(), 1);
+        assert_eq!(depth_of("lib/x86_64-linux-gnu").unwrap(), 2);
+        for lib in ["", "/usr/lib", "../lib", "."] {
+            assert!(depth_of(lib).is_err(), "{lib}");
+        }
+    }
+
+    #[test]
     fn every_blank_of_every_template_is_filled() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
         let Some(names) = SharedNames::of_this_system() else { return };
         for (template, _) in PACKAGING {
             let path = root.join(FOLDER).join("packaging").join(format!("{template}.in"));
             let text = filled(&read(&path).unwrap(), &names, &["-lm".into(), "-lc".into()]);
+            let text = text.replace("@UP@", "..").replace("@LIB@", LIB);
             assert!(!text.contains('@'), "{template}: {text}");
             assert!(text.contains(series()) || template == "upglow-config.cmake", "{template}");
         }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use super::agreement::differences;
-use super::install::{Installed, install};
+use super::install::{Installed, LIB, install};
 use super::{FOLDER, scratch};
 use crate::step::{StepError, finish, json_of, output_of, read, release_bin_dir};
 
@@ -114,7 +114,8 @@ pub(super) fn run_valgrind(root: &Path) -> Result<(), StepError> {
 
 pub(super) fn run_pkg_config(root: &Path) -> Result<(), StepError> {
     need(&["pkg-config"])?;
-    let bench = Bench::new(root)?;
+    // As on Debian, whose libraries of several processors lie beside each other.
+    let bench = Bench::with_libraries_in(root, "lib/of-a-processor")?;
     for package in ["upglow", "upglow-static"] {
         let mut query = Command::new("pkg-config");
         query.args(["--cflags", "--libs", package]);
@@ -174,8 +175,13 @@ struct Bench {
 
 impl Bench {
     fn new(root: &Path) -> Result<Self, StepError> {
+        Self::with_libraries_in(root, LIB)
+    }
+
+    /// With the libraries in this folder below the prefix.
+    fn with_libraries_in(root: &Path, lib: &str) -> Result<Self, StepError> {
         let folder = scratch(root)?;
-        let installed = install(root, &folder.join("prefix"))?;
+        let installed = install(root, &folder.join("prefix"), lib)?;
         fs::create_dir_all(&folder).map_err(StepError::file(&folder))?;
         let upglow = release_bin_dir(root)?.join("upglow");
         let cube = folder.join("cube.safetensors");

@@ -1,11 +1,25 @@
 //! `--cube FILE` in place of the first argument, in every command that takes a cube there.
 
 use std::ffi::OsString;
+use std::path::PathBuf;
 
 /// Commands whose first argument is a cube. In `check` a cube is an option, because it may be absent.
 const COMMANDS: [&str; 7] = ["inspect", "verify", "color", "relight", "export", "bake", "explore"];
 
 const OPTION: &str = "--cube";
+
+/// The option as help, completions and manual pages list it. It is moved before it is read, so what is read is
+/// a second one.
+#[derive(Clone, Debug, clap::Args)]
+pub(crate) struct NamedCube {
+    /// The cube, in place of the first argument
+    #[arg(long = "cube", value_name = "FILE", value_parser = second_cube)]
+    _cube: Option<PathBuf>,
+}
+
+fn second_cube(_: &str) -> Result<PathBuf, String> {
+    Err("a cube was given before, expected one".to_owned())
+}
 
 /// The words of a command line, with a cube that an option names moved to the place of the argument.
 pub(crate) fn with_cube_first(words: impl IntoIterator<Item = OsString>) -> Vec<OsString> {

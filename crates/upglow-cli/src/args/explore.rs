@@ -5,12 +5,15 @@ use std::path::PathBuf;
 use clap::Parser;
 use upglow_terminal::{Threads, parsed};
 
+use super::NamedCube;
 use super::build::BuildArgs;
 
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct ExploreArgs {
     /// Cube made by `upglow build` [default: one with the default options of `upglow build`]
     pub(crate) cube: Option<PathBuf>,
+    #[command(flatten)]
+    _named_cube: NamedCube,
     /// Port of this machine that the page is at [default: any free one]
     #[arg(long, default_value = "0", hide_default_value = true, value_name = "N", value_parser = port)]
     pub(crate) port: u16,

@@ -6,8 +6,8 @@ use upglow_color::{Adaptation, Grid, RgbSpace, choices};
 use upglow_image::{Declared, DeclaredAlpha, Encoding, FORMATS, PngBits, Repair, Sample};
 use upglow_terminal::{Threads, word};
 
-use super::LightArgs;
 use super::values::{PictureSpace, bands, lights, picture_space, position, rgb_space, stops};
+use super::{LightArgs, NamedCube};
 use crate::farm::TaskNumbers;
 use crate::pictures::Depth;
 
@@ -57,6 +57,8 @@ impl PictureArgs {
 pub(crate) struct BakeArgs {
     /// Cube made by `upglow build`; with --task, the plan
     pub(crate) cube: PathBuf,
+    #[command(flatten)]
+    _named_cube: NamedCube,
     #[arg(required_unless_present = "tasks", value_name = "IN", help = inputs_help())]
     pub(crate) inputs: Vec<PathBuf>,
     /// File to write for one picture, EXR or also PNG with --as radiance; file with <UDIM> or %04d in its

@@ -5,13 +5,15 @@ use std::path::PathBuf;
 use upglow_terminal::Threads;
 
 use super::values::{lights, observers};
-use super::{LightArgs, PaintArgs};
+use super::{LightArgs, NamedCube, PaintArgs};
 
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct RelightArgs {
     /// Cube made by `upglow build`
     #[arg(value_name = "CUBE")]
     pub(crate) file: PathBuf,
+    #[command(flatten)]
+    _named_cube: NamedCube,
     /// Linear red in the RGB space of the cube, 0 to 1; up to 10 with --direct or --kind
     #[arg(value_name = "R", allow_hyphen_values = true, requires = "blue")]
     pub(crate) red: Option<String>,

@@ -135,6 +135,8 @@ pub(super) const MOST_CHANNELS: usize = REFLECTANCE.len() + FILM.len();
 pub(super) fn node_of(values: [f32; MOST_CHANNELS], model: &Model) -> Node {
     let [edge, level, slope_per_nm, a, b, c, d] = values;
     let (dyes, fluorescence) = match model {
+        // Where the concentration or the first density is 0, the other numbers have no meaning.
+        _ if c == 0.0 => ([0; 2], [0.0; 3]),
         Model::Reflectance => ([0; 2], [0.0; 3]),
         Model::Dyes(_) => ([dye_index(a), 0], [b, c, 0.0]),
         Model::Film(_) => ([a, b].map(dye_index), [c, d, 0.0]),

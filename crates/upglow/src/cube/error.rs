@@ -5,6 +5,8 @@ use std::fmt::Debug;
 use std::io;
 use std::path::PathBuf;
 
+use safetensors::SafeTensorError;
+
 use crate::cube::CubeError;
 
 /// Why a cube's file cannot be read or written.
@@ -34,8 +36,11 @@ pub enum CubeFileError {
 #[non_exhaustive]
 pub enum ReadCubeError {
     /// The file is not a whole safetensors file.
-    #[error("not a whole safetensors file ({0}), expected a cube made by upglow")]
-    Container(safetensors::SafeTensorError),
+    #[error("not a whole safetensors file: {found}, expected a cube made by upglow")]
+    Container {
+        /// What is wrong with it.
+        found: &'static str,
+    },
     /// The header has no entry `upglow`.
     #[error("no `upglow` entry in the header, expected a cube made by upglow")]
     NotACube,
@@ -106,6 +111,22 @@ pub enum ReadCubeError {
     /// The numbers describe no cube.
     #[error(transparent)]
     Cube(#[from] CubeError),
+}
+
+impl From<SafeTensorError> for ReadCubeError {
+    fn from(error: SafeTensorError) -> Self {
+        let found = match error {
+            SafeTensorError::HeaderTooSmall => "shorter than the length of a header",
+            SafeTensorError::HeaderTooLarge
+            | SafeTensorError::InvalidHeaderLength
+            | SafeTensorError::InvalidHeader(_)
+            | SafeTensorError::InvalidHeaderDeserialization(_)
+            | SafeTensorError::JsonError(_) => "no header at its beginning",
+            SafeTensorError::MetadataIncompleteBuffer => "not of the length that its header states",
+            _ => "its header describes tensors that cannot be",
+        };
+        Self::Container { found }
+    }
 }
 
 impl ReadCubeError {

@@ -137,13 +137,12 @@ impl Cube {
     ///
     /// [`ReadCubeError`] if the content is not a cube; no content panics.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, ReadCubeError> {
-        let (length, metadata) =
-            SafeTensors::read_metadata(bytes).map_err(ReadCubeError::Container)?;
+        let (length, metadata) = SafeTensors::read_metadata(bytes)?;
         let entries = metadata.metadata().as_ref().ok_or(ReadCubeError::NotACube)?;
         let json = entries.get(ENTRY).ok_or(ReadCubeError::NotACube)?;
         check_container(&bytes[size_of::<u64>()..][..length], entries)?;
         let header = Header::parse(json)?;
-        let file = SafeTensors::deserialize(bytes).map_err(ReadCubeError::Container)?;
+        let file = SafeTensors::deserialize(bytes)?;
         check_sum(json, &file)?;
         let n = header.resolution;
         let [least, most] = Self::RESOLUTIONS;
