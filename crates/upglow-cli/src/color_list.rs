@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use upglow_color::LinearRgb;
+use upglow_color::{LinearRgb, NameError};
 use upglow_terminal::Failure;
 
 use crate::{files, plan};
@@ -41,8 +41,9 @@ pub(crate) fn read(path: &Path, direct: bool) -> Result<Vec<NamedColor>, Failure
 
 /// Lines that start with `#` are comments, as in files of curves.
 fn parsed(text: &str, direct: bool) -> Result<Vec<NamedColor>, String> {
+    let text = text.trim_start_matches('\u{feff}');
     let mut lines = (1..).zip(text.lines()).filter(|(_, l)| !l.starts_with('#') && !l.is_empty());
-    let header = lines.next().map_or("", |(_, l)| l).trim_start_matches('\u{feff}').trim();
+    let header = lines.next().map_or("", |(_, l)| l).trim();
     if !HEADERS.contains(&header) {
         let found: String = header.chars().take(80).collect();
         let [plain, named] = HEADERS;
@@ -62,6 +63,7 @@ fn parsed(text: &str, direct: bool) -> Result<Vec<NamedColor>, String> {
                 "line {line}: a name of {letters} letters, expected at most {MOST_NAME_LETTERS}"
             ));
         }
+        NameError::check_text(name).map_err(|error| format!("line {line}: {error}"))?;
         let component = |channel, text| {
             plan::component(text, direct)
                 .map_err(|fault| format!("line {line}: {channel}: {fault}"))
@@ -83,8 +85,17 @@ mod tests {
         let vest = NamedColor { name: "vest".into(), rgb: LinearRgb([0.9, 1.0, 0.0]) };
         let blue = NamedColor { name: String::new(), rgb: LinearRgb([0.0, 0.0, 0.5]) };
         assert_eq!(named, [vest, blue.clone()]);
+        assert_eq!(parsed("\u{feff}# mine\nr,g,b\n0,0,0.5\n", false).unwrap(), [blue.clone()]);
         assert_eq!(parsed("\u{feff}r,g,b\r\n0,0,0.5\r\n", false).unwrap(), [blue]);
         assert_eq!(parsed("r,g,b\n2,0,0\n", true).unwrap()[0].rgb, LinearRgb([2.0, 0.0, 0.0]));
+    }
+
+    #[test]
+    fn a_name_is_one_line_of_text() {
+        for c in ['\u{1b}', '\u{7}', '\u{0}', '\u{9b}', '\u{202e}', '\u{2028}'] {
+            let line = parsed(&format!("name,r,g,b\nx{c}y,0,0,0\n"), false).unwrap_err();
+            assert!(line.starts_with("line 2: ") && line.contains(", expected "), "{line:?}");
+        }
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Reading cubes, and checking that no output replaces an input.
+//! Reading and writing cubes, and where paths lead.
 
 use std::path::Path;
 
@@ -6,11 +6,9 @@ use upglow::{Cube, CubeFileError};
 use upglow_image::{Hash, WriteExrError};
 use upglow_terminal::Failure;
 
-use crate::pictures::RealPictures;
-
 pub(crate) use upglow_terminal::files::{
-    aside, check_ending, check_has_place, check_output, make_folder, read_text, unwritten, write,
-    write_together,
+    aside, check_ending, check_has_place, check_is_free, check_output, hash_of, make_folder,
+    note_input, read_text, unwritten, write, write_together,
 };
 
 /// The ending of cube files.
@@ -25,6 +23,7 @@ const A_CUBE: &str = "a cube made by `upglow build`";
 
 /// Reads a cube.
 pub(crate) fn read_cube(path: &Path) -> Result<Cube, Failure> {
+    note_input(path)?;
     Cube::read(path).map_err(|error| match error {
         CubeFileError::Io { cause, .. } => Failure::system(path, &cause, A_CUBE),
         CubeFileError::Content { cause, .. } => Failure::file(path, cause),
@@ -53,33 +52,6 @@ pub(crate) fn hash(path: &Path) -> Result<Hash, Failure> {
 /// The size of a file.
 pub(crate) fn bytes(path: &Path) -> Result<u64, Failure> {
     path.metadata().map(|found| found.len()).map_err(|error| Failure::system(path, &error, A_CUBE))
-}
-
-/// Checks that an output replaces neither the cube nor an input picture.
-pub(crate) fn check_no_input(
-    output: &Path,
-    cube: Option<&Path>,
-    pictures: &RealPictures<'_>,
-) -> Result<(), Failure> {
-    let Ok(real) = output.canonicalize() else { return Ok(()) };
-    if let Some(picture) = pictures.at(&real) {
-        let message = format!("the picture {} itself, expected another file", picture.display());
-        return Err(Failure::file(output, message));
-    }
-    if cube.is_some_and(|cube| is_same(cube, output)) {
-        return Err(Failure::file(output, "the cube itself, expected another file to write"));
-    }
-    Ok(())
-}
-
-/// Checks that an output can be written, and does not replace the cube or an input picture.
-pub(crate) fn check_output_of(
-    output: &Path,
-    cube: Option<&Path>,
-    pictures: &RealPictures<'_>,
-) -> Result<(), Failure> {
-    check_no_input(output, cube, pictures)?;
-    check_output(output)
 }
 
 /// Whether two paths lead to the same existing file or folder.

@@ -70,9 +70,7 @@ pub(crate) fn answer(metamers: &Metamers, args: &PaintArgs) -> Result<OwnMateria
 
 pub(crate) fn refused(error: MetamerError) -> Failure {
     match error {
-        MetamerError::Color { .. } | MetamerError::Lights { .. } => {
-            Failure::option("--known", error)
-        }
+        MetamerError::Lights { .. } => Failure::option("--known", error),
         _ => Failure::input("R G B", error),
     }
 }

@@ -1,10 +1,9 @@
 //! The pictures that a command reads, and the files that it writes for them.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 use std::ffi::{OsStr, OsString};
-use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use upglow::open_input;
 use upglow_image::SUFFIXES;
@@ -107,11 +106,13 @@ pub(crate) fn find(inputs: &[PathBuf], depth: Depth) -> Result<Inputs, Failure> 
             }
         }
     }
+    found.pictures.iter().try_for_each(|picture| files::note_input(&picture.path()))?;
     Ok(found)
 }
 
 /// Checks that a file can be read, before work on others starts.
 pub(crate) fn check_there(path: &Path, expected: &str) -> Result<(), Failure> {
+    files::note_input(path)?;
     open_input(path).map(drop).map_err(|error| Failure::system(path, &error, expected))
 }
 
@@ -238,7 +239,7 @@ impl Named<'_> {
         for (i, input) in inputs.iter().enumerate() {
             let files = self.files(input)?;
             // Not `all`, which would stop at the first.
-            let fresh = files.iter().filter(|path| taken.insert(hash_of(path))).count();
+            let fresh = files.iter().filter(|path| taken.insert(files::hash_of(path))).count();
             if fresh == files.len() {
                 continue;
             }
@@ -260,37 +261,6 @@ fn twins(input: &Input, twin: &Input) -> Failure {
     let twin = twin.display();
     let message = format!("same name as {twin}, expected names that differ without their suffixes");
     Failure::file(&input.path(), message)
-}
-
-/// The pictures of a command by the paths that they really have, of which only hashes are kept, and only if one
-/// is asked for.
-#[derive(Debug, Default)]
-pub(crate) struct RealPictures<'a> {
-    inputs: &'a [Input],
-    numbers: OnceLock<HashMap<u64, usize>>,
-}
-
-impl<'a> RealPictures<'a> {
-    pub(crate) fn new(inputs: &'a [Input]) -> Self {
-        Self { inputs, numbers: OnceLock::new() }
-    }
-
-    /// The picture that has this path.
-    pub(crate) fn at(&self, real: &Path) -> Option<PathBuf> {
-        let numbers = self.numbers.get_or_init(|| {
-            let real = self.inputs.iter().map(|input| input.path().canonicalize().ok());
-            real.enumerate().filter_map(|(i, path)| Some((hash_of(&path?), i))).collect()
-        });
-        let path = self.inputs[*numbers.get(&hash_of(real))?].path();
-        (path.canonicalize().ok()? == real).then_some(path)
-    }
-}
-
-/// Not the same for other builds of the program.
-fn hash_of(path: &Path) -> u64 {
-    let mut hasher = DefaultHasher::new();
-    path.hash(&mut hasher);
-    hasher.finish()
 }
 
 impl Outputs<'_> {

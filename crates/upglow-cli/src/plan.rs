@@ -80,7 +80,9 @@ fn contract(args: &ContractArgs) -> Result<Contract, Failure> {
 
 /// Returns an error if the observer does not see the light.
 pub(crate) fn checked(contract: Contract) -> Result<Contract, Failure> {
-    contract.check().map_err(|error| Failure::option("--illuminant", error))?;
+    let is_named = Illuminant::named(contract.illuminant.name()).is_ok();
+    let option = if is_named { "--observer" } else { "--illuminant" };
+    contract.check().map_err(|error| Failure::option(option, error))?;
     Ok(contract)
 }
 
@@ -247,6 +249,8 @@ fn named_or_folder(text: &str, normalize: bool) -> Result<DyeSet, Failure> {
     let path = Path::new(text);
     match DyeSet::named(text) {
         Err(DyeSetError::Unknown { .. }) if is_path(path) => {
+            let entries = path.read_dir().into_iter().flatten().flatten();
+            entries.map(|entry| entry.path()).try_for_each(|file| files::note_input(&file))?;
             let set = if normalize {
                 DyeSet::from_folder_normalized(path)
             } else {

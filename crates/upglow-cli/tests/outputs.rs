@@ -162,6 +162,156 @@ fn without_the_right_to_write_every_command_gives_one_line_and_changes_nothing()
     assert_eq!(closed.read_dir().unwrap().count(), 1);
 }
 
+/// Commands that read and write files: `<` is before the names of those that exist, `>` before those that are written.
+const READERS_AND_WRITERS: [&str; 12] = [
+    "build --resolution 2 --light <lamp --observer <eye -o >a",
+    "color <cube .5 .5 .5 --light <lamp --plot >a",
+    "color <cube .9 .3 .02 --kind fluorescent --known <lamp .9 .3 .02 --light <light -o >a --plot >b",
+    "relight <cube --colors <list --light <lamp --observer <eye --csv >a --plot >b",
+    "fit-matrix <matrix.csv --light <lamp -o >a --plot >b",
+    "export <cube --format csv -o >a",
+    "export <cube --format mtlx --light <lamp -o >a",
+    "bake <cube <picture --as radiance --light <lamp -o z.exr --plan >a",
+    "bake <cube <picture --as radiance --light <lamp -o >a",
+    "check <picture --cube <cube -o >a --heat-map >b",
+    "check <picture --light <lamp --adapt none -o >a --heat-map >b",
+    "check --task 1 <plan -o >a --heat-map >b",
+];
+
+#[expect(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
+fn folder_with_all_inputs() -> Folder {
+    let folder = folder_with_picture();
+    std::fs::rename(folder.path().join("cube.exr"), folder.path().join("picture")).unwrap();
+    for lamp in ["lamp", "light"] {
+        folder.write(lamp, support::curves("power", |_| "1".to_owned()));
+    }
+    folder.write("eye", support::eye());
+    folder.write("list", "r,g,b\n0.5,0.3,0.2\n");
+    folder
+        .write("matrix.csv", "outgoing_nm\\incident_nm per_band,400,500\n400,0.5,0\n500,0.1,0.5\n");
+    folder.done("bake cube picture -o baked.exr --plan planned.json");
+    std::fs::rename(folder.path().join("planned.json"), folder.path().join("plan")).unwrap();
+    folder
+}
+
+/// Runs a command that must be refused, and change nothing.
+fn assert_refused(folder: &Folder, line: &str) -> String {
+    let content = |folder: &Folder| -> Vec<(String, Option<Vec<u8>>)> {
+        let read = |name: String| (name.clone(), std::fs::read(folder.path().join(name)).ok());
+        folder.names().into_iter().map(read).collect()
+    };
+    let before = content(folder);
+    let run = folder.run(line);
+    assert!(run.status == 1 && run.stdout.is_empty(), "{line}: {} {}", run.status, run.stdout);
+    assert!(content(folder) == before, "{line}: files have changed");
+    one_line(&run.stderr)
+}
+
+#[test]
+fn no_command_writes_over_what_it_reads() {
+    let folder = folder_with_all_inputs();
+    for command in READERS_AND_WRITERS {
+        let words: Vec<&str> = command.split(' ').collect();
+        let inputs = words.iter().filter_map(|word| word.strip_prefix('<'));
+        for input in inputs {
+            let link = format!("link-to-{input}");
+            symlink(input, folder.path().join(&link)).unwrap();
+            for output in words.iter().filter(|word| word.starts_with('>')) {
+                for target in [input, &link] {
+                    let line = command.replace(output, target).replace(['<', '>'], "");
+                    let told = assert_refused(&folder, &line);
+                    assert!(told.contains(", expected "), "{line}: {told}");
+                }
+            }
+            std::fs::remove_file(folder.path().join(&link)).unwrap();
+        }
+    }
+}
+
+#[test]
+fn no_command_writes_two_outputs_to_one_file() {
+    let folder = folder_with_all_inputs();
+    symlink("one", folder.path().join("other")).unwrap();
+    for command in READERS_AND_WRITERS.iter().filter(|command| command.contains(">b")) {
+        for (a, b) in [("one", "one"), ("one", "other"), ("/dev/stdout", "/dev/stdout")] {
+            let line = command.replace(">a", a).replace(">b", b).replace('<', "");
+            let told = assert_refused(&folder, &line);
+            let names_one = [a, b].iter().any(|path| told.contains(&format!("{path}: ")));
+            assert!(names_one && told.contains("another output"), "{line}: {told}");
+        }
+    }
+    symlink("out.exr", folder.path().join("out.mtlx")).unwrap();
+    symlink("out.wgsl", folder.path().join("out.textures")).unwrap();
+    for line in
+        ["bake cube picture --as radiance --light A --mtlx -o out.exr", "export cube -o out.wgsl"]
+    {
+        let told = assert_refused(&folder, line);
+        assert!(told.contains("another output"), "{line}: {told}");
+    }
+}
+
+#[test]
+fn a_task_writes_over_nothing_that_it_reads() {
+    let folder = folder_with_all_inputs();
+    let plan = String::from_utf8(folder.read("plan")).unwrap();
+    for input in ["picture", "cube", "altered"] {
+        folder.write("altered", plan.replace("\"baked.exr\"", &format!("\"{input}\"")));
+        let told = assert_refused(&folder, "bake --task 1 altered");
+        let expected = "an input of this command, expected another file to write";
+        assert_eq!(told, format!("{input}: {expected}"));
+    }
+    folder.write("altered", plan.replace("\"options\":[", "\"options\":[\"--help\","));
+    let told = assert_refused(&folder, "bake --task 1 altered");
+    assert!(told.starts_with("altered: options: "), "{told}");
+}
+
+#[test]
+fn what_cannot_be_written_is_told_before_the_work_starts() {
+    let folder = folder_with_picture();
+    let long = "x".repeat(300);
+    for (output, expected) in
+        [("new/", "new/: a path that ends in /, expected a file to write"), (&*long, "expected ")]
+    {
+        // Hours of work.
+        let line = format!("build --resolution 256 --method exhaustive -o {output}");
+        let told = assert_refused(&folder, &line);
+        assert!(told.starts_with(output) && told.contains(expected), "{told}");
+    }
+    let (status, _, stderr) =
+        in_shell(&folder, "TMPDIR=/no/such \"$0\" export cube --format csv -o /dev/stdout");
+    assert_eq!(status, 1);
+    let told = one_line(&stderr);
+    assert!(
+        told.contains("/no/such") && told.ends_with("expected TMPDIR to name a folder to write in"),
+        "{told}"
+    );
+    let (status, _, stderr) = in_shell(&folder, "\"$0\" --help >/dev/full");
+    assert_eq!(
+        (status, one_line(&stderr).starts_with("standard output: no space left")),
+        (1, true)
+    );
+}
+
+#[test]
+fn a_limit_on_the_size_of_files_is_an_error_of_the_file() {
+    let folder = folder_with_picture();
+    for writer in WRITERS {
+        let line = of(writer, "limited");
+        let (status, _, stderr) = in_shell(&folder, &format!("ulimit -f 1; exec \"$0\" {line}"));
+        let is_small = folder.path().join("limited").is_file();
+        assert!(status == 1 || (status == 0 && is_small), "{line}: {status} {stderr}");
+        if status == 1 {
+            let last = stderr.lines().last().unwrap_or_default();
+            let told = one_line(&format!("{last}\n"));
+            assert!(told.starts_with("limited: file too large, expected "), "{line}: {told}");
+        }
+        let left: Vec<String> =
+            folder.names().into_iter().filter(|name| name.starts_with(".upglow")).collect();
+        assert_eq!(left, [""; 0], "{line}");
+        let _ = std::fs::remove_file(folder.path().join("limited"));
+    }
+}
+
 #[test]
 fn links_are_followed_and_modes_are_kept() {
     let folder = folder_with_picture();

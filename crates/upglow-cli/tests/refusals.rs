@@ -366,7 +366,7 @@ fn a_cube_is_not_replaced_by_what_is_made_of_it() {
     let folder = folder_with_cube();
     let before = folder.read("cube");
     let line = folder.refused(1, "export cube ./cube --format csv");
-    assert_eq!(line, "./cube: the cube itself, expected another file to write");
+    assert_eq!(line, "cube: an input of this command, expected another file to write");
     folder.refused(1, "color cube 0 0 0 --plot cube");
     assert_eq!(folder.read("cube"), before);
 }

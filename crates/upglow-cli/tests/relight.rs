@@ -181,7 +181,7 @@ fn what_cannot_be_relit_is_refused_in_one_line() {
         (
             1,
             "relight cube 0 0 0 --csv cube",
-            "cube: the cube itself, expected another file to write",
+            "cube: an input of this command, expected another file to write",
         ),
     ];
     for (status, command, line) in cases {

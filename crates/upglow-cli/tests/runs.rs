@@ -110,7 +110,7 @@ mod stopped {
         let output = child.wait_with_output().unwrap();
         let stderr = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(130), "{stderr}");
-        assert_eq!(one_line(&stderr), "stopped, nothing was written");
+        assert_eq!(one_line(&stderr), "stopped; files are whole or as before");
         assert!(output.stdout.is_empty());
         assert!(start.elapsed() < PATIENCE, "it took too long to stop");
         assert_eq!(folder.names(), names);
@@ -153,6 +153,38 @@ mod stopped {
         stop_in(&folder, words, "-INT", 2);
         stop_in(&folder, words, "-TERM", 15);
         assert_eq!(folder.read("out.exr"), b"old");
+    }
+
+    #[test]
+    fn a_pipe_that_nobody_reads_is_not_waited_for_after_a_stop() {
+        let folder = Folder::new();
+        assert!(Command::new("mkfifo").arg(folder.path().join("pipe")).status().unwrap().success());
+        stop_in(&folder, "build --resolution 2 -o pipe", "-TERM", 15);
+    }
+
+    #[test]
+    fn the_files_of_a_picture_appear_together() {
+        let folder = Folder::new();
+        folder.done("build --resolution 2 -o cube");
+        folder.done("examples");
+        let words = "bake cube examples/dusk.exr -o out.exr --as rgbu --engine rec709";
+        let before = folder.names().len();
+        for after_ms in (0..4000).step_by(400) {
+            let mut child =
+                stoppable().args(words.split(' ')).current_dir(folder.path()).spawn().unwrap();
+            wait_until_it_catches(&child, 15);
+            std::thread::sleep(Duration::from_millis(after_ms));
+            if child.try_wait().unwrap().is_none() {
+                send(&child, "-TERM");
+            }
+            child.wait().unwrap();
+            let made = folder.names().len() - before;
+            assert!([0, 4].contains(&made), "{made} of four files");
+            if made == 4 {
+                return;
+            }
+        }
+        panic!("it is never done");
     }
 
     #[test]

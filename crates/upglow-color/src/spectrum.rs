@@ -150,8 +150,9 @@ pub fn read_columns<const N: usize>(
     columns: [&str; N],
     rules: SampleRules,
 ) -> Result<[Spectrum; N], SpectrumCsvError> {
+    let text = text.trim_start_matches('\u{feff}');
     let mut lines = (1..).zip(text.lines()).filter(|(_, l)| !l.starts_with('#') && !l.is_empty());
-    let header = lines.next().map_or("", |(_, l)| l).trim_start_matches('\u{feff}').trim();
+    let header = lines.next().map_or("", |(_, l)| l).trim();
     let expected = format!("wavelength_nm,{}", columns.join(","));
     if header != expected {
         return Err(SpectrumCsvError::Header {

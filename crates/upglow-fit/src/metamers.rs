@@ -97,8 +97,8 @@ pub enum MetamerError {
     Material(#[from] OwnMaterialError),
 }
 
-/// No material is ten times as bright as white.
-const BRIGHTEST: f64 = 10.0;
+/// Far brighter than any material, of which none is ten times as bright as white.
+const BRIGHTEST: f64 = 1000.0;
 
 /// How many of the most probable materials are kept, and how many of them may be the answer.
 const MOST_KEPT: usize = 256;

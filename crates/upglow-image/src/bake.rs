@@ -21,7 +21,7 @@ use std::io;
 use std::path::Path;
 
 use rayon::prelude::*;
-use upglow::{Cube, LookupError};
+use upglow::{Aside, Cube, LookupError};
 use upglow_color::rounding::to_single;
 use upglow_color::{ContractError, Grid, Illuminant, LinearRgb, ReducedBasisError, RgbSpace};
 use upglow_fit::{ColoredLightError, FitOptionsError, KindCounts, StandingTable, Stopped, Watch};
@@ -327,6 +327,23 @@ impl<'c> Baker<'c> {
         output: impl AsRef<Path>,
         watch: &dyn Watch,
     ) -> Result<Baked, BakeError> {
+        let (baked, file) = self.bake_aside(input, output, watch)?;
+        file.commit().map_err(WriteExrError::from)?;
+        Ok(baked)
+    }
+
+    /// As [`Baker::bake`], but the file still lacks its name: files that belong together then appear together, by
+    /// [`Aside::commit_together`].
+    ///
+    /// # Errors
+    ///
+    /// As [`Baker::bake`].
+    pub fn bake_aside(
+        &self,
+        input: impl AsRef<Path>,
+        output: impl AsRef<Path>,
+        watch: &dyn Watch,
+    ) -> Result<(Baked, Aside), BakeError> {
         let input = input.as_ref();
         let mut picture = self.open(input)?;
         let size = picture.picture().size();
@@ -355,9 +372,10 @@ impl<'c> Baker<'c> {
             all = all.with(&self.write(&mut writer, &band)?);
             Ok::<_, BakeError>(())
         })?;
-        baked.bytes = writer.finish()?;
+        let mut file = writer.into_file()?;
+        baked.bytes = file.bytes().map_err(WriteExrError::from)?;
         (baked.kinds, baked.beyond_screen) = (all.kinds, all.beyond_screen);
-        Ok(baked)
+        Ok((baked, file))
     }
 
     /// A hash of the version of this library, the cube, the form and the options.

@@ -3,9 +3,9 @@
 use std::fmt::Write as _;
 
 use upglow_color::rounding::to_single;
-use upglow_color::{LinearRgb, choices};
+use upglow_color::{LinearRgb, choices, is_plain};
 
-use crate::xml::{escaped, is_forbidden, plain};
+use crate::xml::{escaped, plain};
 
 /// The format of a [`Lut`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -189,7 +189,7 @@ impl Lut {
 
     /// The file, with a title and more lines about it.
     pub fn text(&self, title: &str, about: &[String]) -> String {
-        let clean = |text: &str| text.replace(is_forbidden, "\u{fffd}");
+        let clean = |text: &str| text.replace(|c| !is_plain(c), "\u{fffd}");
         let title = clean(title);
         let about: Vec<String> = about.iter().map(|line| clean(line)).collect();
         match self.lattice.format {

@@ -1,10 +1,10 @@
 //! Failures of a program: one line on standard error and an exit status.
 
 use std::error::Error;
+use std::ffi::OsString;
 use std::fmt::{self, Display};
 use std::io;
 use std::path::Path;
-use std::process::ExitCode;
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use upglow_fit::Stopped;
@@ -22,6 +22,8 @@ pub enum Failure {
     Stopped,
     /// The reader of standard output, or of another pipe, has closed it.
     OutputClosed,
+    /// The help was printed, because words are missing on the command line.
+    Shown,
 }
 
 /// An error of a library, or a text.
@@ -67,15 +69,16 @@ impl Failure {
     }
 
     /// Prints the line and returns the exit status.
-    pub(crate) fn report(&self, program: &str) -> ExitCode {
+    pub(crate) fn report(&self, program: &str) -> u8 {
         let status = match self {
             Self::Input(_) => INPUT_STATUS,
             Self::Usage(_) => USAGE_STATUS,
             Self::Stopped => STOPPED_STATUS,
-            Self::OutputClosed => return ExitCode::SUCCESS,
+            Self::OutputClosed => return 0,
+            Self::Shown => return USAGE_STATUS,
         };
         say(&format!("{program}: {self}"));
-        ExitCode::from(status)
+        status
     }
 }
 
@@ -84,7 +87,8 @@ impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Input(line) | Self::Usage(line) => f.write_str(&shortened(one_line(line))),
-            Self::Stopped => f.write_str("stopped, nothing was written"),
+            Self::Stopped => f.write_str("stopped; files are whole or as before"),
+            Self::Shown => f.write_str("no command"),
             Self::OutputClosed => f.write_str("the reader of the output has closed it"),
         }
     }
@@ -127,20 +131,38 @@ fn io_message(error: &io::Error) -> String {
     }
 }
 
-/// Prints clap's error as one line, or the requested help.
-pub(crate) fn report_usage(program: &str, error: &clap::Error) -> ExitCode {
-    let kind = error.kind();
-    let help = ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand;
-    if !error.use_stderr() || kind == help {
-        // If help cannot be printed, there is nothing else to report.
+/// Prints the help that was asked for, or else returns clap's error as one line.
+pub(crate) fn of_usage(error: &clap::Error, words: &[OsString]) -> Result<(), Failure> {
+    let is_help_in_place_of_work =
+        error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand;
+    if is_help_in_place_of_work {
+        // There is nothing else to report.
         let _ = error.print();
-        return if kind == help { ExitCode::from(USAGE_STATUS) } else { ExitCode::SUCCESS };
+        return Err(Failure::Shown);
     }
-    Failure::Usage(usage_line(error)).report(program)
+    if !error.use_stderr() {
+        return match error.print() {
+            Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+                let expected = "room for the help and the right to write";
+                Err(Failure::system(Path::new("standard output"), &error, expected))
+            }
+            _ => Ok(()),
+        };
+    }
+    if error.kind() == ErrorKind::InvalidUtf8
+        && let Some(word) = words.iter().find(|word| word.to_str().is_none())
+    {
+        let found = word.to_string_lossy();
+        return Err(Failure::Usage(format!("{found}: not UTF-8, expected a word or name that is")));
+    }
+    Err(Failure::Usage(usage_line(error)))
 }
 
 /// The option and the cause of its error; for other errors the first paragraph and the tips.
 pub(crate) fn usage_line(error: &clap::Error) -> String {
+    if !error.use_stderr() {
+        return "a question for help, expected words to work with".to_owned();
+    }
     if let (Some(ContextValue::String(option)), Some(cause)) =
         (error.get(ContextKind::InvalidArg), error.source())
     {

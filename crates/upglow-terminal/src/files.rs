@@ -1,22 +1,84 @@
 //! Files that the programs read and write.
+//!
+//! No file of a run is both read and written, and none is written twice: a file that is read is noted by
+//! [`note_input`], one that will be written by [`check_output`], and whichever comes second is refused.
 
+use std::collections::HashSet;
+use std::collections::hash_map::DefaultHasher;
+use std::hash::{Hash as _, Hasher as _};
 use std::io::{self, ErrorKind};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
 
 use upglow::{Aside, read_text_input};
 
 use crate::failure::Failure;
 use crate::output::keep_for_data;
 
+/// The files of this run, by hashes of the paths that they really have: there may be millions.
+#[derive(Debug, Default)]
+struct Files {
+    inputs: HashSet<u64>,
+    outputs: HashSet<u64>,
+}
+
+fn files() -> MutexGuard<'static, Files> {
+    static FILES: LazyLock<Mutex<Files>> = LazyLock::new(Mutex::default);
+    FILES.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The hash of a path, not the same for other builds of the program.
+pub fn hash_of(path: &Path) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    path.hash(&mut hasher);
+    hasher.finish()
+}
+
+/// Notes a file that is read, and checks that it will not be written.
+pub fn note_input(path: &Path) -> Result<(), Failure> {
+    let Ok(real) = path.canonicalize() else { return Ok(()) };
+    let (mut files, real) = (files(), hash_of(&real));
+    if files.outputs.contains(&real) {
+        return Err(is_input(path));
+    }
+    files.inputs.insert(real);
+    Ok(())
+}
+
+/// Checks that a file, which another run will write, is neither read nor written by this one.
+pub fn check_is_free(path: &Path) -> Result<(), Failure> {
+    let Ok(real) = path.canonicalize() else { return Ok(()) };
+    files().check(path, hash_of(&real))
+}
+
+impl Files {
+    fn check(&self, path: &Path, real: u64) -> Result<(), Failure> {
+        if self.inputs.contains(&real) {
+            return Err(is_input(path));
+        }
+        if self.outputs.contains(&real) {
+            let message = "the file of another output of this command, expected one for each";
+            return Err(Failure::file(path, message));
+        }
+        Ok(())
+    }
+}
+
+fn is_input(path: &Path) -> Failure {
+    Failure::file(path, "an input of this command, expected another file to write")
+}
+
 /// Reads a text file; `expected` says in errors what it should be.
 pub fn read_text(path: &Path, expected: &str) -> Result<String, Failure> {
+    note_input(path)?;
     read_text_input(path).map_err(|error| Failure::system(path, &error, expected))
 }
 
-/// Checks that a file can be written at `path`, before long work starts.
+/// Checks that a file can be written at `path`, before long work starts, and that it is no input and no other output.
 ///
 /// If it is standard output, reports then go to standard error.
 pub fn check_output(path: &Path) -> Result<(), Failure> {
+    check_is_free(path)?;
     let folder = folder_of(path);
     if !folder.is_dir() {
         let message = format!("no folder {}, expected an existing one", folder.display());
@@ -29,10 +91,24 @@ pub fn check_output(path: &Path) -> Result<(), Failure> {
             Failure::system(path, &error, expected)
         }
     })?;
-    if aside.is_standard_output() {
+    let real = if aside.is_standard_output() {
         keep_for_data();
+        Some(PathBuf::from("standard output"))
+    } else {
+        // The bytes of several outputs may go to one device.
+        aside.path().and_then(real_path)
+    };
+    if let Some(real) = real {
+        let (mut files, real) = (files(), hash_of(&real));
+        files.check(path, real)?;
+        files.outputs.insert(real);
     }
     Ok(())
+}
+
+/// The path that a file, which need not exist, really has.
+fn real_path(path: &Path) -> Option<PathBuf> {
+    Some(folder_of(path).canonicalize().ok()?.join(path.file_name()?))
 }
 
 /// Checks that files can be written beside an output: that it is no device or pipe.

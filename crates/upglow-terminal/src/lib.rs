@@ -12,11 +12,12 @@ mod values;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
+use std::sync::OnceLock;
 
 use clap::Parser;
 
 pub use failure::Failure;
-pub use output::{Console, Report, say, size};
+pub use output::{Console, Report, escaped, say, size};
 pub use progress::{Bar, Threads, catch_stops, check_stopped};
 pub use values::{count, in_range, number, parsed, word};
 
@@ -37,13 +38,19 @@ pub fn run<Args: Parser>(
     words: impl IntoIterator<Item = OsString>,
     work: impl FnOnce(Args) -> Result<(), Failure>,
 ) -> ExitCode {
-    let command = Args::command();
-    let program = command.get_name();
-    match Args::try_parse_from(words) {
-        Ok(args) => match work(args) {
-            Ok(()) => ExitCode::SUCCESS,
-            Err(failure) => failure.report(program),
-        },
-        Err(error) => failure::report_usage(program, &error),
-    }
+    let program = PROGRAM.get_or_init(|| Args::command().get_name().to_owned());
+    progress::catch_limit_of_files();
+    let words: Vec<OsString> = words.into_iter().collect();
+    let done = match Args::try_parse_from(&words) {
+        Ok(args) => work(args),
+        Err(error) => failure::of_usage(&error, &words),
+    };
+    done.map_or_else(|failure| failure.report(program), |()| 0).into()
+}
+
+/// The name of the program, before its messages.
+static PROGRAM: OnceLock<String> = OnceLock::new();
+
+fn program() -> &'static str {
+    PROGRAM.get().map_or("upglow", String::as_str)
 }

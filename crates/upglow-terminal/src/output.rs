@@ -86,7 +86,7 @@ pub(crate) fn one_line(text: &str) -> String {
 }
 
 /// JSON with the same characters as escapes: outside texts it has none of them.
-fn escaped(json: &str) -> String {
+pub fn escaped(json: &str) -> String {
     json.chars().fold(String::with_capacity(json.len()), |mut text, c| {
         if is_plain(c) {
             text.push(c);

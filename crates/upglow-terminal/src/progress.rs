@@ -2,12 +2,15 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, LazyLock, Mutex, Once, PoisonError};
+use std::thread::sleep;
+use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use upglow_fit::{Progress, Watch};
 
 use crate::failure::Failure;
 use crate::output::Console;
+use crate::program;
 use crate::values::in_range;
 
 /// Redrawing more often than this costs time without being visible.
@@ -50,8 +53,8 @@ impl Console {
         let bar = Bar::start(self.quiet);
         let pool =
             rayon::ThreadPoolBuilder::new().num_threads(threads.threads.unwrap_or(0)).build();
-        let pool = pool.map_err(|error| {
-            Failure::input("--threads", format!("{error}, expected fewer threads"))
+        let pool = pool.map_err(|_| {
+            Failure::input("--threads", "more than the system gives, expected fewer threads")
         })?;
         let done = pool.install(|| work(&bar));
         bar.bar.finish_and_clear();
@@ -79,8 +82,15 @@ fn style() -> ProgressStyle {
         .unwrap_or_else(|_| ProgressStyle::default_bar())
 }
 
+/// How long work may take to end after the user has stopped it. Then it waits for something else, such as the reader
+/// of a pipe.
+const GRACE: Duration = Duration::from_secs(5);
+/// How often it is looked whether the user has stopped the work.
+const LOOK: Duration = Duration::from_millis(200);
+
 /// Lets [`check_stopped`] know of Ctrl-C, termination and the end of the terminal, which then no longer end the
-/// program. What the program was started to ignore, as by `nohup`, it ignores.
+/// program at once, but five seconds later at the latest. What the program was started to ignore, as by `nohup`, it
+/// ignores.
 pub fn catch_stops() {
     use signal_hook::consts::{SIGINT, SIGTERM};
     #[cfg(unix)]
@@ -94,7 +104,20 @@ pub fn catch_stops() {
             // the next run would not remove.
             let _ = signal_hook::flag::register(signal, STOPPED.clone());
         }
+        std::thread::spawn(|| {
+            while check_stopped().is_ok() {
+                sleep(LOOK);
+            }
+            sleep(GRACE);
+            std::process::exit(Failure::Stopped.report(program()).into());
+        });
     });
+}
+
+/// Makes a limit on the size of files an error of the file, which else would end the program.
+pub(crate) fn catch_limit_of_files() {
+    #[cfg(unix)]
+    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default());
 }
 
 /// Whether the program was started to ignore a signal; `false` on systems that do not tell.

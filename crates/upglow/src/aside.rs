@@ -67,11 +67,16 @@ impl Aside {
     /// socket, a path without a file name, or symbolic links in a circle; the system's error if its folder or the
     /// device cannot be written to.
     pub fn create(path: &Path) -> io::Result<Self> {
+        if path.as_os_str().as_encoded_bytes().ends_with(b"/") {
+            return Err(refused("a path that ends in /"));
+        }
         let (file, place) = match path.metadata() {
             Ok(found) => match stream(path, &found)? {
-                Some(stream) => (tempfile::tempfile()?, Place::Stream(stream)),
+                Some(stream) => (without_name()?, Place::Stream(stream)),
                 None => beside(path)?,
             },
+            // A temporary name is shorter.
+            Err(error) if error.kind() == io::ErrorKind::InvalidFilename => return Err(error),
             Err(_) => beside(path)?,
         };
         Ok(Self { file: BufWriter::with_capacity(BUFFER_BYTES, file), place })
@@ -81,6 +86,25 @@ impl Aside {
     #[must_use]
     pub fn is_standard_output(&self) -> bool {
         matches!(self.place, Place::Stream(Stream::Output(_)))
+    }
+
+    /// The path of the file that will appear, behind symbolic links; `None` if the bytes go to a device or a pipe.
+    #[must_use]
+    pub fn path(&self) -> Option<&Path> {
+        match &self.place {
+            Place::Path { path, .. } => Some(path),
+            Place::Stream(_) => None,
+        }
+    }
+
+    /// How many bytes it has so far.
+    ///
+    /// # Errors
+    ///
+    /// The system's error, such as that of a full disk.
+    pub fn bytes(&mut self) -> io::Result<u64> {
+        self.file.flush()?;
+        self.file.get_ref().metadata().map(|found| found.len())
     }
 
     /// Gives the file its name; returns its size in bytes.
@@ -203,6 +227,21 @@ fn turn(files: &[Complete]) -> Vec<File> {
         Some(folder)
     };
     folders.into_iter().filter_map(locked).collect()
+}
+
+/// A temporary file that has no name.
+fn without_name() -> io::Result<File> {
+    tempfile::tempfile().map_err(|error| match error.kind() {
+        io::ErrorKind::StorageFull => error,
+        _ => {
+            let folder = std::env::temp_dir();
+            let message = format!(
+                "no temporary file in {}, expected TMPDIR to name a folder to write in",
+                folder.display()
+            );
+            io::Error::new(io::ErrorKind::InvalidInput, message)
+        }
+    })
 }
 
 /// A temporary file beside what a path leads to.

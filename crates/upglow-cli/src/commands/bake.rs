@@ -17,7 +17,7 @@ use super::documents::MapDocuments;
 use crate::args::{BakeArgs, BakeForm, BakeFormat, SampleName};
 use crate::batch::{Batch, Interpreted};
 use crate::output::{Lines, warn, warn_of_ultraviolet};
-use crate::pictures::{Depth, Input, Named, Outputs, RealPictures};
+use crate::pictures::{Depth, Input, Named, Outputs};
 use crate::{files, pictures, plan};
 
 use super::{bake_plan, bake_tasks};
@@ -65,10 +65,10 @@ pub(crate) fn run(args: &BakeArgs, console: &Console) -> Result<(), Failure> {
     if let Some(plan) = &args.plan {
         return bake_plan::run(args, plan, &recipe, &inputs, &outputs, console);
     }
-    check_outputs(args, &inputs.pictures, &outputs)?;
+    check_outputs(&inputs.pictures, &outputs)?;
     let documents = args.result.mtlx.then(|| MapDocuments::beside(args.output(), &outputs));
     for path in documents.iter().flat_map(MapDocuments::paths) {
-        files::check_output_of(path, Some(&args.cube), &RealPictures::new(&inputs.pictures))?;
+        files::check_output(path)?;
     }
     let cube = files::read_cube(&args.cube)?;
     let whites = whites(args, &recipe.forms, &cube)?;
@@ -146,7 +146,7 @@ impl<'a> Work<'a> {
         Ok(Self { args, recipe, bakers, missing_ultraviolet: warned.collect() })
     }
 
-    /// Bakes the files of a picture, but for those that are made already.
+    /// Bakes the files of a picture, but for those that are made already; they appear together.
     pub(super) fn bake(
         &self,
         input: &Path,
@@ -156,13 +156,15 @@ impl<'a> Work<'a> {
         console: &Console,
     ) -> Result<(), Failure> {
         let Self { args, recipe, .. } = self;
+        let (mut files, mut reports) = (Vec::new(), Vec::new());
         for (i, (baker, output)) in self.bakers.iter().zip(outputs).enumerate() {
             if is_made(i) {
                 batch.add_unchanged(input);
                 continue;
             }
             let start = Instant::now();
-            let baked = match console.work(args.threads, |bar| baker.bake(input, output, bar))? {
+            let baked = console.work(args.threads, |bar| baker.bake_aside(input, output, bar))?;
+            let (baked, file) = match baked {
                 Ok(baked) => baked,
                 // Under another light the picture would fail alike.
                 Err(error) => return batch.add_failure(input, failure(error, input, output)),
@@ -175,7 +177,8 @@ impl<'a> Work<'a> {
                      or --compact"
                 ));
             }
-            let report = BakeReport {
+            files.push(file);
+            reports.push(BakeReport {
                 input: input.display().to_string(),
                 file: output.display().to_string(),
                 form: args.form.name(),
@@ -191,10 +194,14 @@ impl<'a> Work<'a> {
                 bytes: baked.bytes,
                 time_s: start.elapsed().as_secs_f64(),
                 interpretation: baked.interpretation,
-            };
-            batch.add(console, report)?;
+            });
         }
-        Ok(())
+        if let Some(first) = outputs.first()
+            && let Err(failure) = files::write_together(first, files)
+        {
+            return batch.add_failure(input, failure);
+        }
+        reports.into_iter().try_for_each(|report| batch.add(console, report))
     }
 }
 
@@ -302,12 +309,11 @@ fn refuse_own_folder(args: &BakeArgs) -> Result<(), Failure> {
 }
 
 /// Creates the folders of the outputs, and checks all outputs before the first is baked.
-fn check_outputs(args: &BakeArgs, inputs: &[Input], outputs: &Named<'_>) -> Result<(), Failure> {
-    let pictures = RealPictures::new(inputs);
+fn check_outputs(inputs: &[Input], outputs: &Named<'_>) -> Result<(), Failure> {
     for input in inputs {
         for output in outputs.files(input)? {
             make_folder_of(&output)?;
-            files::check_output_of(&output, Some(&args.cube), &pictures)?;
+            files::check_output(&output)?;
         }
     }
     Ok(())

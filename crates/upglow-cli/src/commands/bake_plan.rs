@@ -15,7 +15,7 @@ use crate::args::{Args, BakeArgs};
 use crate::farm::{CubeFile, Head, PlanWriter, Task, Template};
 use crate::files;
 use crate::output::{Lines, failed};
-use crate::pictures::{Input, Inputs, Named, RealPictures};
+use crate::pictures::{Input, Inputs, Named};
 
 #[derive(Debug, Serialize)]
 struct PlanReport {
@@ -46,7 +46,7 @@ pub(super) fn run(
     let template = Template::named(path);
     let plan = template.as_ref().map_or(path, |template| &template.plan);
     for output in [Some(plan), template.as_ref().map(|_| path)].into_iter().flatten() {
-        files::check_output_of(output, Some(&args.cube), &RealPictures::default())?;
+        files::check_output(output)?;
     }
     if template.is_none() {
         files::check_ending(path, &["json"])?;
@@ -60,12 +60,7 @@ pub(super) fn run(
         work.bakers.iter().map(Baker::hash).cloned().collect(),
         inputs.pictures.len(),
     );
-    let planner = Planner {
-        args,
-        baker: &work.bakers[0],
-        outputs,
-        pictures: RealPictures::new(&inputs.pictures),
-    };
+    let planner = Planner { baker: &work.bakers[0], outputs };
     let writer = PlanWriter::create(plan, &head)?;
     let written = console.work(args.threads, |bar| planner.write(writer, &inputs.pictures, bar))?;
     let (texels, bytes) = written?;
@@ -86,10 +81,8 @@ pub(super) fn run(
 
 /// What makes tasks of pictures.
 struct Planner<'a> {
-    args: &'a BakeArgs,
     baker: &'a Baker<'a>,
     outputs: &'a Named<'a>,
-    pictures: RealPictures<'a>,
 }
 
 impl Planner<'_> {
@@ -140,7 +133,7 @@ impl Planner<'_> {
             self.baker.size(&path).map_err(|error| picture_failure(error, &path))?;
         let outputs = self.outputs.files(input)?;
         for output in &outputs {
-            files::check_no_input(output, Some(&self.args.cube), &self.pictures)?;
+            files::check_is_free(output)?;
         }
         Ok(Task {
             task: number,

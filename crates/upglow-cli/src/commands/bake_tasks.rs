@@ -36,8 +36,12 @@ pub(super) fn run(args: &BakeArgs, tasks: &TaskNumbers, console: &Console) -> Re
         if let Err(failure) = check_hash(picture, &task.sha256) {
             return batch.add_failure(picture, failure);
         }
+        files::note_input(picture)?;
         let outputs: Vec<PathBuf> = task.files.iter().map(PathBuf::from).collect();
-        outputs.iter().try_for_each(|output| make_folder_of(output))?;
+        for output in &outputs {
+            make_folder_of(output)?;
+            files::check_output(output)?;
+        }
         let is_made = |i| is_made(&plan, &task, i);
         work.bake(picture, &outputs, is_made, &mut batch, console)
     });
@@ -60,9 +64,10 @@ pub(super) fn bake_args(plan: &PlanFile) -> Result<BakeArgs, Failure> {
     let words = ["upglow", "bake"].into_iter().map(str::to_owned);
     let options = plan.head.options.iter().cloned();
     let names = ["--", &plan.head.cube.file, "pictures"].into_iter().map(str::to_owned);
-    match upglow_terminal::parse::<Args>(words.chain(options).chain(names))?.command {
-        Command::Bake(args) => Ok(*args),
-        _ => unreachable!("the second word is bake"),
+    match upglow_terminal::parse::<Args>(words.chain(options).chain(names)) {
+        Ok(Args { command: Command::Bake(args), .. }) => Ok(*args),
+        Ok(_) => unreachable!("the second word is bake"),
+        Err(failure) => Err(Failure::file(&plan.path, format!("options: {failure}"))),
     }
 }
 

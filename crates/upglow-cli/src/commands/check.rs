@@ -17,7 +17,7 @@ use crate::args::CheckArgs;
 use crate::batch::{Batch, Interpreted};
 use crate::farm::TaskNumbers;
 use crate::output::{Lines, warn_of_ultraviolet};
-use crate::pictures::{Input, RealPictures};
+use crate::pictures::Input;
 use crate::{files, pictures, plan};
 
 #[derive(Debug, Serialize)]
@@ -127,11 +127,10 @@ fn check_outputs(args: &CheckArgs, inputs: &[Input]) -> Result<(), Failure> {
         );
         return Err(Failure::option("--heat-map", message));
     }
-    let pictures = RealPictures::new(inputs);
     let page = args.output.iter().map(|path| (path, files::PAGE));
     let mut outputs = page.chain(args.heat_map.iter().map(|path| (path, files::PNG)));
     outputs.try_for_each(|(path, endings)| {
-        files::check_output_of(path, args.cube.as_deref(), &pictures)?;
+        files::check_output(path)?;
         files::check_ending(path, endings)
     })
 }

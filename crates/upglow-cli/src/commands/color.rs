@@ -16,7 +16,6 @@ use super::engine::EngineReport;
 use crate::args::{AnswerName, ColorArgs};
 use crate::metamers::{self, KnownColor, PaintReport, known_colors};
 use crate::output::warn_of_ultraviolet;
-use crate::pictures::RealPictures;
 use crate::plot::{Curves, Figure, Swatch, svg};
 use crate::{files, plan};
 
@@ -31,7 +30,7 @@ pub(crate) fn run(args: &ColorArgs, console: &Console) -> Result<(), Failure> {
     for (output, endings) in [(&args.output, files::CUBE), (&args.plot, files::SVG)] {
         let Some(output) = output else { continue };
         files::check_ending(output, endings)?;
-        files::check_output_of(output, Some(&args.file), &RealPictures::default())?;
+        files::check_output(output)?;
     }
     let lights = plan::lights_to_see(&args.lights, &args.light)?;
     let known = known_colors(&args.known, &args.light)?;

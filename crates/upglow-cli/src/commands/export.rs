@@ -18,7 +18,6 @@ use super::material_report::{dye_names, unsigned_zeros};
 use super::{documents, luts};
 use crate::args::{ExportArgs, ExportFormat, SlopeLimit, limit_text};
 use crate::output::{Lines, quoted, warn, warn_of_own_light, warn_of_ultraviolet};
-use crate::pictures::RealPictures;
 use crate::plan::refuse_ignored;
 use crate::{files, plan};
 
@@ -47,7 +46,7 @@ pub(crate) fn run(args: &ExportArgs, console: &Console) -> Result<(), Failure> {
         None => None,
     };
     files::check_ending(args.output(), &[kind.name()])?;
-    files::check_output_of(args.output(), Some(&args.file), &RealPictures::default())?;
+    files::check_output(args.output())?;
     let cube = files::read_cube(&args.file)?;
     let has_dyes = match kind {
         ExportFormat::Coeff => false,
@@ -141,9 +140,7 @@ fn shader(
 /// Checks files that are written beside the output.
 fn check_beside(args: &ExportArgs, paths: &[PathBuf]) -> Result<(), Failure> {
     files::check_has_place(args.output())?;
-    let check =
-        |path: &PathBuf| files::check_output_of(path, Some(&args.file), &RealPictures::default());
-    paths.iter().try_for_each(check)
+    paths.iter().try_for_each(|path| files::check_output(path))
 }
 
 /// A MaterialX document, what it refers to, and the same material for USD.

@@ -35,10 +35,6 @@ pub(crate) fn run(args: &FitMatrixArgs, console: &Console) -> Result<(), Failure
     for (output, endings) in [(&args.plot, files::SVG), (&args.output, files::CUBE)] {
         let Some(output) = output else { continue };
         files::check_ending(output, endings)?;
-        if files::is_same(&args.file, output) {
-            let message = "the matrix itself, expected another file to write";
-            return Err(Failure::file(output, message));
-        }
         files::check_output(output)?;
     }
     let dyes = match args.dyes.as_str() {
@@ -55,6 +51,9 @@ pub(crate) fn run(args: &FitMatrixArgs, console: &Console) -> Result<(), Failure
     let measured = read(args)?;
     let fit = fit_matrix(&measured, &options).map_err(|error| match error {
         error @ MatrixFitError::Reflectance { .. } => Failure::option("--reflectance", error),
+        error @ MatrixFitError::Material(_) if args.dyes == "measured" => {
+            Failure::file(&args.file, error).with("; are the axes of the matrix exchanged?")
+        }
         error @ MatrixFitError::Material(_) => Failure::option("--dyes", error),
         error => Failure::file(&args.file, error),
     })?;

@@ -1,6 +1,6 @@
 //! `upglow relight`: how the materials of a cube look under lights, to observers.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use rayon::prelude::*;
 use upglow::Cube;
@@ -13,7 +13,6 @@ use super::relight_report::{RelightReport, ViewReport};
 use crate::args::RelightArgs;
 use crate::color_list::{self, NamedColor};
 use crate::output::{push_cell, quoted, warn_of_ultraviolet};
-use crate::pictures::RealPictures;
 use crate::plot::Swatch;
 use crate::plot::swatches::{self, Chart, Column};
 use crate::{files, metamers, plan};
@@ -37,8 +36,7 @@ pub(crate) fn run(args: &RelightArgs, console: &Console) -> Result<(), Failure> 
     for (output, endings) in [(&args.csv, files::CSV), (&args.plot, files::SVG)] {
         if let Some(output) = output {
             files::check_ending(output, endings)?;
-            files::check_output_of(output, Some(&args.file), &RealPictures::default())?;
-            check_is_no_input(output, args)?;
+            files::check_output(output)?;
         }
     }
     let mut lights = plan::lights_to_see(&args.lights, &args.light)?;
@@ -112,17 +110,6 @@ fn listed(args: &RelightArgs) -> Result<Option<Vec<NamedColor>>, Failure> {
             Err(Failure::Usage(format!("colors: {message}")))
         }
     }
-}
-
-/// Checks that an output does not replace the list of colors, a light or an observer.
-fn check_is_no_input(output: &Path, args: &RelightArgs) -> Result<(), Failure> {
-    let list = args.colors.iter().map(PathBuf::as_path);
-    let mut inputs = list.chain(args.lights.iter().chain(&args.observers).map(Path::new));
-    if inputs.any(|input| files::is_same(input, output)) {
-        let message = "an input of this command, expected another file to write";
-        return Err(Failure::file(output, message));
-    }
-    Ok(())
 }
 
 fn nodes(cube: &Cube) -> Vec<NamedColor> {

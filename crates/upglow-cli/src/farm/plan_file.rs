@@ -11,9 +11,9 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use upglow::{Aside, open_input};
 use upglow_image::Hash;
-use upglow_terminal::Failure;
+use upglow_terminal::{Failure, escaped};
 
-use crate::files::unwritten;
+use crate::files::{note_input, unwritten};
 
 /// Changes with the meaning of the file.
 const VERSION: u32 = 1;
@@ -86,7 +86,7 @@ impl PlanWriter {
     pub(crate) fn create(path: &Path, head: &Head) -> Result<Self, Failure> {
         let file = Aside::create(path).map_err(|error| unwritten(path, &error))?;
         let mut writer = Self { file, path: path.to_owned(), is_first: true };
-        let head = serde_json::to_string(head).expect("texts and numbers are JSON");
+        let head = escaped(&serde_json::to_string(head).expect("texts and numbers are JSON"));
         let open = head.strip_suffix('}').expect("the head is an object");
         writer.write(&format!("{open},\"tasks\":["))?;
         Ok(writer)
@@ -94,7 +94,7 @@ impl PlanWriter {
 
     pub(crate) fn add(&mut self, task: &Task) -> Result<(), Failure> {
         let comma = if std::mem::take(&mut self.is_first) { "" } else { "," };
-        let task = serde_json::to_string(task).expect("texts and numbers are JSON");
+        let task = escaped(&serde_json::to_string(task).expect("texts and numbers are JSON"));
         self.write(&format!("{comma}\n{task}"))
     }
 
@@ -114,7 +114,7 @@ impl PlanWriter {
 #[derive(Debug)]
 pub(crate) struct PlanFile {
     file: BufReader<File>,
-    path: PathBuf,
+    pub(crate) path: PathBuf,
     pub(crate) head: Head,
     /// Where the lines of the tasks begin and the file ends.
     tasks: [u64; 2],
@@ -127,6 +127,7 @@ const A_PLAN: &str = "a plan made by `upglow bake --plan`";
 impl PlanFile {
     pub(crate) fn open(path: &Path) -> Result<Self, Failure> {
         let failed = |error: io::Error| Failure::system(path, &error, A_PLAN);
+        note_input(path)?;
         let file = open_input(path).map_err(failed)?;
         let end = file.metadata().map_err(failed)?.len();
         let mut file = BufReader::new(file);

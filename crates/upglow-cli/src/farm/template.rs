@@ -27,7 +27,7 @@ impl Template {
     /// `walls.template.json` has the plan `walls.plan.json`; `None` for other names. A name with yaml in place of
     /// json does as well, because JSON is YAML.
     pub(crate) fn named(path: &Path) -> Option<Self> {
-        let name = path.file_name()?.to_str()?;
+        let name = path.file_name()?.to_string_lossy();
         let endings = [".template.json", ".template.yaml"];
         let stem = endings.iter().find_map(|ending| name.strip_suffix(ending))?;
         let plan = path.with_file_name(format!("{stem}.plan.json"));

@@ -1,5 +1,7 @@
 //! Baked files that are being written.
 
+use upglow::Aside;
+
 use super::levels::Levels;
 use super::png::PngWriter;
 use crate::exr::mipmap::MipmapWriter;
@@ -15,12 +17,12 @@ pub(super) enum Output {
 }
 
 impl Output {
-    /// Completes the file; returns its size in bytes.
-    pub(super) fn finish(self) -> Result<u64, WriteExrError> {
+    /// Completes the file but for its name.
+    pub(super) fn into_file(self) -> Result<Aside, WriteExrError> {
         match self {
-            Self::Exr(writer) => writer.finish(),
-            Self::Png(writer) => Ok(writer.finish()?),
-            Self::Mipmap(mipmap) => mipmap.1.finish(),
+            Self::Exr(writer) => writer.into_file(),
+            Self::Png(writer) => Ok(writer.into_file()?),
+            Self::Mipmap(mipmap) => mipmap.1.into_file(),
         }
     }
 }

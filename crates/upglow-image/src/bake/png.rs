@@ -69,11 +69,11 @@ impl PngWriter {
         self.rows.write_all(&bytes)
     }
 
-    /// Completes the file; returns its size in bytes.
-    pub(super) fn finish(self) -> io::Result<u64> {
+    /// Completes the file but for its name.
+    pub(super) fn into_file(self) -> io::Result<Aside> {
         self.rows.finish()?;
         let aside = Arc::into_inner(self.file.0).expect("the encoder has been dropped");
-        aside.into_inner().expect("no thread panicked with it").commit()
+        Ok(aside.into_inner().expect("no thread panicked with it"))
     }
 }
 

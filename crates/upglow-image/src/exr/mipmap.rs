@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use upglow::Aside;
+
 use super::header::Arrangement;
 use super::writer::{BlockFile, ExrDescription, WriteExrError, check_half, pack};
 
@@ -97,12 +99,12 @@ impl MipmapWriter {
         self.file.write(before + y * across + x, &[x, y, level, level].map(number), packed)
     }
 
-    /// Completes the file and gives it its name. Returns its size in bytes.
+    /// Completes the file but for its name.
     ///
     /// # Errors
     ///
     /// [`WriteExrError`] if the disk is full; no file is left then.
-    pub(crate) fn finish(self) -> Result<u64, WriteExrError> {
-        self.file.finish()
+    pub(crate) fn into_file(self) -> Result<Aside, WriteExrError> {
+        self.file.into_file()
     }
 }

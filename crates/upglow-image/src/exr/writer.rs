@@ -210,13 +210,8 @@ impl BlockFile {
         Ok(())
     }
 
-    /// Writes the table and gives the file its name. Returns its size in bytes.
-    pub(super) fn finish(self) -> Result<u64, WriteExrError> {
-        Ok(self.into_file()?.commit()?)
-    }
-
     /// Writes the table; the file only lacks its name.
-    fn into_file(mut self) -> Result<Aside, WriteExrError> {
+    pub(super) fn into_file(mut self) -> Result<Aside, WriteExrError> {
         debug_assert!(self.offsets.iter().all(|&at| at > 0), "a block is missing");
         self.file.seek(SeekFrom::Start(self.table))?;
         let table: Vec<u8> = self.offsets.iter().flat_map(|at| at.to_le_bytes()).collect();
