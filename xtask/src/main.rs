@@ -48,6 +48,7 @@ usage: cargo xtask COMMAND
       --libdir LIB     with the libraries in DIR/LIB, for example lib/x86_64-linux-gnu, instead of DIR/lib
   site             make target/site/book from the pages of this repository, with mdBook
   sbom FILE        write the packages of Cargo.lock to FILE as a CycloneDX document
+  notices FILE     write the terms of all packages by others in the programs and libraries to FILE
   count [FOLDER]   count source lines, public names and the program's crates, here or in FOLDER
   outputs PROGRAM FOLDER
                    make every product of the executable PROGRAM, an `upglow` of any commit, in the
@@ -101,6 +102,9 @@ fn run(root: &Path, args: &[&str]) -> Result<bool, StepError> {
             println!("install-c: {}, {}", installed.include.display(), installed.lib.display());
         }
         ["site"] => println!("site: {}", site::build(root)?.join("index.html").display()),
+        ["notices", file] => {
+            println!("notices: {} packages", sbom::write_notices(root, Path::new(file))?);
+        }
         ["sbom", file] => println!("sbom: {} packages", sbom::write(root, Path::new(file))?),
         ["count"] => println!("{}", count::count(root)?),
         ["count", folder] => println!("{}", count::count(Path::new(folder))?),

@@ -1,4 +1,5 @@
-//! The bill of materials: every package of `Cargo.lock`, as a document of the kind `CycloneDX`.
+//! The bill of materials: every package of `Cargo.lock`, as a document of the kind `CycloneDX`; and the licenses of
+//! those that are shipped.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -35,10 +36,63 @@ impl Package {
     }
 }
 
+fn metadata(root: &Path) -> Result<Value, StepError> {
+    json_of(cargo(root, "metadata --format-version 1 --locked --all-features"))
+}
+
+/// What the names of files with terms begin with.
+const TERMS: [&str; 6] = ["LICENSE", "LICENCE", "COPYING", "COPYRIGHT", "NOTICE", "UNLICENSE"];
+
+/// Writes the terms of all packages of others that are shipped, each text once; how many packages there are.
+pub(crate) fn write_notices(root: &Path, file: &Path) -> Result<usize, StepError> {
+    let metadata = metadata(root)?;
+    let shipped = shipped(&metadata);
+    let mut list = String::new();
+    let mut texts: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    let mut count = 0;
+    for package in array(&metadata["packages"]) {
+        let (name, version) = (text(&package["name"]), text(&package["version"]));
+        let is_ours = package["source"].is_null();
+        if is_ours || !shipped.contains(&(name.clone(), version.clone())) {
+            continue;
+        }
+        count += 1;
+        let title = format!("{name} {version}");
+        let manifest = text(&package["manifest_path"]);
+        let terms = terms(Path::new(&manifest).parent().unwrap_or(root))?;
+        let [license, place] = ["license", "repository"].map(|field| text(&package[field]));
+        let lack = if terms.is_empty() { "; without a text in its package" } else { "" };
+        list += &format!("- {title}: {}; {place}{lack}\n", license.replace('/', " OR "));
+        terms.into_iter().for_each(|terms| texts.entry(terms).or_default().push(title.clone()));
+    }
+    let mut document = format!(
+        "# Terms of packages by others\n\nThe programs and libraries of upglow contain these packages, on some platform or \
+         with some feature:\n\n{list}"
+    );
+    for (terms, titles) in &texts {
+        document += &format!("\n## {}\n\n```text\n{terms}\n```\n", titles.join(", "));
+    }
+    fs::write(file, document).map_err(StepError::file(file))?;
+    Ok(count)
+}
+
+/// The texts of the files with terms in a package's folder.
+fn terms(folder: &Path) -> Result<Vec<String>, StepError> {
+    let entries = fs::read_dir(folder).map_err(StepError::file(folder))?.flatten();
+    let mut paths: Vec<_> = entries.map(|entry| entry.path()).collect();
+    paths.retain(|path| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy().to_uppercase();
+        path.is_file() && TERMS.iter().any(|start| name.starts_with(start))
+    });
+    paths.sort();
+    let lines = |text: String| text.lines().map(str::trim_end).collect::<Vec<_>>().join("\n");
+    paths.iter().map(|path| read(path).map(|text| lines(text).trim_matches('\n').into())).collect()
+}
+
 /// Writes the document.
 pub(crate) fn write(root: &Path, file: &Path) -> Result<usize, StepError> {
     let packages = packages(&read(&root.join("Cargo.lock"))?);
-    let metadata = json_of(cargo(root, "metadata --format-version 1 --locked --all-features"))?;
+    let metadata = metadata(root)?;
     let document = document(&packages, &metadata);
     let text = format!("{document:#}\n");
     fs::write(file, text).map_err(StepError::file(file))?;
@@ -157,6 +211,20 @@ fn text(value: &Value) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_terms_of_a_package_that_is_shipped_are_told_and_those_of_one_for_tests_are_not() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
+        let file = std::env::temp_dir().join(format!("upglow-notices-{}.md", std::process::id()));
+        if write_notices(root, &file).is_err() {
+            println!("skipped: `cargo fetch --locked` has not run");
+            return;
+        }
+        let text = read(&file).unwrap();
+        fs::remove_file(&file).unwrap();
+        assert!(text.contains("- exr 1.") && text.contains("Redistributions in binary form"));
+        assert!(!text.contains("- proptest ") && !text.contains("- upglow"));
+    }
 
     #[test]
     fn the_components_are_the_packages_of_the_lock_file() {

@@ -34,7 +34,7 @@
 #define UPGLOW_VERSION_MAJOR 0
 
 // Second number of the version that this header describes.
-#define UPGLOW_VERSION_MINOR 1
+#define UPGLOW_VERSION_MINOR 2
 
 // Third number of the version that this header describes.
 #define UPGLOW_VERSION_PATCH 0
@@ -137,7 +137,7 @@ typedef struct {
 extern "C" {
 #endif // __cplusplus
 
-// The version of the library that is linked, such as "0.1.0". The text is valid until the program
+// The version of the library that is linked, such as "0.2.0". The text is valid until the program
 // ends.
 const char *upglow_version(void);
 

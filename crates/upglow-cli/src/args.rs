@@ -113,10 +113,9 @@ pub(crate) enum Command {
 pub(crate) struct PaintArgs {
     /// Choose by what paints are like, among all built-in dyes with yields of their own: any, which fluoresces
     /// if its color is unlikely otherwise; ordinary, which does not; fluorescent, which does
-    /// [default with --known: any]
     #[arg(long, value_name = "NAME", value_parser = word::<PaintKind>(), conflicts_with = "direct")]
     pub(crate) kind: Option<PaintKind>,
-    /// With --kind or --known: single, the material from which those that may have the color differ least;
+    /// Which material is chosen so: single, the material from which those that may have the color differ least;
     /// mixture, a blend of up to four that comes near to the mean of all [default: single]
     #[arg(long, value_name = "NAME", value_parser = word::<AnswerName>())]
     pub(crate) answer: Option<AnswerName>,
@@ -161,7 +160,7 @@ pub(crate) struct InspectArgs {
     pub(crate) space: Option<RgbSpace>,
     #[arg(
         long,
-        alias = "light",
+        visible_alias = "light",
         value_name = "NAME|FILE",
         help = format!("Light of a coefficient table: {} [default: D65]", lights())
     )]
@@ -218,7 +217,8 @@ pub(crate) struct ColorArgs {
     #[command(flatten)]
     pub(crate) paint: PaintArgs,
     /// A light under which the color is known too, and the color: linear RGB as this command shows it under
-    /// the light. The material that has both is chosen, or for two lights that has all three
+    /// the light. The material that has both is chosen, or for two lights that has all three; --kind is then any
+    /// unless it is given
     #[arg(
         long,
         num_args = 4,
@@ -233,6 +233,7 @@ pub(crate) struct ColorArgs {
     pub(crate) output: Option<PathBuf>,
     #[arg(
         long = "light",
+        alias = "illuminant",
         value_name = "NAME|FILE",
         help = format!(
             "Also show its color under this light: {}; several may be given \
@@ -290,6 +291,7 @@ pub(crate) struct ExportArgs {
     pub(crate) slope_max_per_nm: Option<SlopeLimit>,
     #[arg(
         long = "light",
+        alias = "illuminant",
         value_name = "NAME|FILE",
         help = format!("Light of the colors of mtlx: {} [default: that of the cube]", lights())
     )]

@@ -85,7 +85,10 @@ mod tests {
         let vest = NamedColor { name: "vest".into(), rgb: LinearRgb([0.9, 1.0, 0.0]) };
         let blue = NamedColor { name: String::new(), rgb: LinearRgb([0.0, 0.0, 0.5]) };
         assert_eq!(named, [vest, blue.clone()]);
-        assert_eq!(parsed("\u{feff}# mine\nr,g,b\n0,0,0.5\n", false).unwrap(), [blue.clone()]);
+        assert_eq!(
+            parsed("\u{feff}# mine\nr,g,b\n0,0,0.5\n", false).unwrap(),
+            std::slice::from_ref(&blue)
+        );
         assert_eq!(parsed("\u{feff}r,g,b\r\n0,0,0.5\r\n", false).unwrap(), [blue]);
         assert_eq!(parsed("r,g,b\n2,0,0\n", true).unwrap()[0].rgb, LinearRgb([2.0, 0.0, 0.0]));
     }

@@ -134,6 +134,8 @@ fn every_command_prints_what_the_schema_says() {
         ("export", "export cube.safetensors -o cube.clf --resolution 3"),
         ("inspect", "inspect cube.coeff --space acescg"),
         ("examples", "examples -o pictures"),
+        ("man", "man -o man"),
+        ("completions", "completions bash"),
         ("bake", "bake cube.safetensors pictures/chart.exr -o material.exr"),
         ("bake", "bake cube.safetensors pictures/chart.exr -o fast.exr --fast"),
         (

@@ -331,7 +331,10 @@ fn pictures_that_are_refused() {
         ("check absent.exr", "absent.exr: no such file or folder, expected a picture"),
         ("read absent.exr --at 0,0", "absent.exr: no such file or folder, expected a spectral"),
         ("lint absent.exr", "absent.exr: no such file or folder, expected an OpenEXR file"),
-        ("bake cube tile.exr -o ./tile.exr", "./tile.exr: an input of this command, expected another"),
+        (
+            "bake cube tile.exr -o ./tile.exr",
+            "./tile.exr: an input of this command, expected another",
+        ),
         ("check tile.exr -o tile.exr", "tile.exr: an input of this command, expected another"),
         ("check tile.exr --cube cube -o cube", "cube: an input of this command, expected another"),
         (

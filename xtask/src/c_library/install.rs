@@ -6,6 +6,7 @@ use std::process::Command;
 
 use super::FOLDER;
 use super::isolated::isolate;
+use crate::sbom::write_notices;
 use crate::step::{StepError, cargo, finish, output_and_messages_of, read, target_dir};
 
 /// All crates of the workspace have this version.
@@ -81,9 +82,11 @@ pub(crate) fn install(root: &Path, prefix: &Path, lib: &str) -> Result<Installed
     let folder_of_libraries = lib;
     let lib = &installed.lib;
     place(&source.join("include/upglow.h"), &installed.include.join("upglow.h"))?;
+    let terms = prefix.join("share/licenses/upglow");
     for text in LICENSES {
-        place(&source.join(text), &prefix.join("share/licenses/upglow").join(text))?;
+        place(&source.join(text), &terms.join(text))?;
     }
+    write_notices(root, &terms.join("THIRD-PARTY.md"))?;
     let library = lib.join("libupglow.a");
     place(&built.join("libupglow_c.a"), &library)?;
     if std::env::consts::OS == "linux" {

@@ -33,7 +33,7 @@ pub(crate) struct ContractArgs {
     pub(crate) space: RgbSpace,
     #[arg(
         long,
-        alias = "light",
+        visible_alias = "light",
         default_value = "D65",
         value_name = "NAME|FILE",
         help = format!("Light: {}", lights())

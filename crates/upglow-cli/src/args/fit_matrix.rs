@@ -34,6 +34,7 @@ pub(crate) struct FitMatrixArgs {
     pub(crate) reflectance: Option<MatrixReflectance>,
     #[arg(
         long = "light",
+        alias = "illuminant",
         value_name = "NAME|FILE",
         help = format!(
             "Compare the colors under this light: {}; several may be given \

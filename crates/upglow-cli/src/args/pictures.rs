@@ -126,6 +126,7 @@ pub(crate) struct ResultArgs {
     pub(crate) compact: bool,
     #[arg(
         long = "light",
+        alias = "illuminant",
         value_name = "NAME|FILE",
         help = format!(
             "Light under which colors are computed: {}; given several times, one file is written \
@@ -179,7 +180,7 @@ pub(crate) struct CheckArgs {
     pub(crate) cube: Option<PathBuf>,
     #[arg(
         long,
-        alias = "light",
+        visible_alias = "light",
         value_name = "NAME|FILE",
         conflicts_with = "cube",
         help = format!("Light: {} [default: D65]", lights())

@@ -40,6 +40,7 @@ pub(crate) struct RelightArgs {
     pub(crate) band: bool,
     #[arg(
         long = "light",
+        alias = "illuminant",
         value_name = "NAME|FILE",
         help = format!(
             "Light to see the colors under: {}; several may be given \

@@ -4,6 +4,8 @@
 pub(super) const PROGRAM: &str = "\
 Commands that take a cube as their first argument also take it as --cube FILE, in any place.
 
+Exit status: 0 done; 1 a file or a color is invalid, or a law is broken; 2 the command line is wrong; 130 stopped.
+
 Examples:
   upglow build -o acescg.safetensors
   upglow color acescg.safetensors 0.9 0 0.9
@@ -13,7 +15,7 @@ pub(super) const BUILD: &str = "\
 Examples:
   upglow build -o acescg.safetensors
   upglow build --space rec2020 --resolution 48 -o rec2020.safetensors
-  upglow build --illuminant A --preset jakob2019 -o reflectances.safetensors";
+  upglow build --light A --preset jakob2019 -o reflectances.safetensors";
 
 pub(super) const INSPECT: &str = "\
 Examples:

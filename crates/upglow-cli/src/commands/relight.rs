@@ -1,7 +1,5 @@
 //! `upglow relight`: how the materials of a cube look under lights, to observers.
 
-use std::path::PathBuf;
-
 use rayon::prelude::*;
 use upglow::Cube;
 use upglow_color::{Contract, ContractError, Illuminant, LinearRgb, Observer, Screen, Xyz};
