@@ -60,6 +60,7 @@ pub(crate) fn run(args: InspectArgs, console: &Console) -> Result<(), Failure> {
     if inspect_table::is_table(&args.file) {
         return inspect_table::run(args, console);
     }
+    let cube = files::read_cube(&args.file)?;
     let given = [
         ("--space", args.space.is_some()),
         ("--illuminant", args.illuminant.is_some()),
@@ -69,7 +70,6 @@ pub(crate) fn run(args: InspectArgs, console: &Console) -> Result<(), Failure> {
         let message = "given for a cube, which stores its own, expected a coefficient table";
         return Err(Failure::option(option, message));
     }
-    let cube = files::read_cube(&args.file)?;
     console.print(&InspectReport {
         file: args.file.display().to_string(),
         bytes: files::bytes(&args.file)?,
