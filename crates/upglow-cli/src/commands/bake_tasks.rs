@@ -33,17 +33,21 @@ pub(super) fn run(args: &BakeArgs, tasks: &TaskNumbers, console: &Console) -> Re
     let ended = tasks.iter().try_for_each(|number| {
         let task = plan.task(number)?;
         let picture = Path::new(&task.picture);
-        if let Err(failure) = check_hash(picture, &task.sha256) {
-            return batch.add_failure(picture, failure);
-        }
-        files::note_input(picture)?;
         let outputs: Vec<PathBuf> = task.files.iter().map(PathBuf::from).collect();
-        for output in &outputs {
-            make_folder_of(output)?;
-            files::check_output(output)?;
-        }
         let is_made = |i| is_made(&plan, &task, i);
-        work.bake(picture, &outputs, is_made, &mut batch, console)
+        let check = || {
+            check_hash(picture, &task.sha256)?;
+            files::note_input(picture)?;
+            let missing = outputs.iter().enumerate().filter(|(i, _)| !is_made(*i));
+            missing.map(|(_, output)| output).try_for_each(|output| {
+                make_folder_of(output)?;
+                files::check_output(output)
+            })
+        };
+        match check() {
+            Ok(()) => work.bake(picture, &outputs, is_made, &mut batch, console),
+            Err(failure) => batch.add_failure(picture, failure),
+        }
     });
     batch.finish(console, ended)
 }
