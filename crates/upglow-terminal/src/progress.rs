@@ -104,7 +104,8 @@ pub fn catch_stops() {
             // the next run would not remove.
             let _ = signal_hook::flag::register(signal, STOPPED.clone());
         }
-        std::thread::spawn(|| {
+        // Where the system gives no thread for it, the program waits.
+        let _ = std::thread::Builder::new().spawn(|| {
             while check_stopped().is_ok() {
                 sleep(LOOK);
             }
