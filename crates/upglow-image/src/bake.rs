@@ -366,8 +366,14 @@ impl<'c> Baker<'c> {
         let mut all = Filled::default();
         picture.for_each_band(self.band_rows(size[0]), "baking", watch, |mut band| {
             match &repairer {
-                Some(repairer) => baked.repaired += repairer.repair(&mut band.rgb),
-                None => refuse_outside(&band)?,
+                Some(repairer) => {
+                    let alpha = band.alpha.as_deref_mut();
+                    baked.repaired += repairer.repair(&mut band.rgb, alpha);
+                }
+                None => {
+                    refuse_outside(&band)?;
+                    band.check_alpha()?;
+                }
             }
             all = all.with(&self.write(&mut writer, &band)?);
             Ok::<_, BakeError>(())

@@ -122,7 +122,8 @@ impl<'c> Checker<'c> {
     ///
     /// # Errors
     ///
-    /// [`CheckError`] if the picture cannot be read or the watcher stops.
+    /// [`CheckError`] if the picture cannot be read, its alpha is NaN or infinite somewhere, or the watcher
+    /// stops.
     pub fn check(
         &mut self,
         input: impl AsRef<Path>,
@@ -136,6 +137,7 @@ impl<'c> Checker<'c> {
         picture.convert_to(&limits.contract);
         let mut pass = Pass::new(limits, size);
         picture.for_each_band(BAND_ROWS, "checking", watch, |band| {
+            band.check_alpha()?;
             pass.add(band.first_row, &band.rgb);
             Ok::<_, CheckError>(())
         })?;

@@ -19,9 +19,9 @@ use upglow_fit::{
     BlendKinds, CubeSummary, KindCounts, MaterialKind, Polisher, Preset, Unwatched, build_cube,
 };
 use upglow_image::{
-    BakeError, BakeOptions, Baked, Baker, Declared, Encoding, ExamplePicture, ExrDescription,
-    ExrReader, ExrWriter, Form, Incident, Layout, Lint, MaterialPicture, Picture, PngBits, Repair,
-    Sample, SpectralPicture, SpectralTexel,
+    BakeError, BakeOptions, Baked, Baker, Checker, Declared, Encoding, ExamplePicture,
+    ExrDescription, ExrReader, ExrWriter, Form, Incident, Layout, Lint, MaterialPicture, Picture,
+    PngBits, Repair, Sample, SpectralPicture, SpectralTexel,
 };
 
 const POLISHED: Form = Form::Material;
@@ -978,6 +978,55 @@ fn a_texel_outside_is_refused_by_its_place_and_the_old_file_stays() {
         }
     }
     assert_eq!(std::fs::read_dir(desk.0.path()).unwrap().count(), 2);
+}
+
+#[test]
+fn alpha_that_is_not_finite_is_refused_by_its_place_in_every_form() {
+    let desk = Desk::new();
+    let output = desk.path("out.exr");
+    let screen = Form::Screen {
+        light: Illuminant::named("D65").unwrap(),
+        bits: PngBits::Eight,
+        exposure_stops: 0.0,
+    };
+    for (n, form) in forms().into_iter().chain([screen]).enumerate() {
+        for (value, text) in
+            [(f32::NAN, "NaN"), (f32::INFINITY, "inf"), (f32::NEG_INFINITY, "-inf")]
+        {
+            let rgb = random_colors(7 * 70);
+            let place = (n * 97 + 13) % rgb.len();
+            let mut alpha = vec![1.0; rgb.len()];
+            alpha[place..].fill(value);
+            let input = desk.picture("in.exr", 7, &rgb, Some(&alpha));
+            let line = format!(
+                "texel {},{}: alpha is {text}, expected a finite number",
+                place % 7,
+                place / 7
+            );
+            let refused = bake(cube(), form.clone(), options(Sample::Half), &input, &output);
+            assert_eq!(refused.unwrap_err().to_string(), line);
+            assert!(!output.exists());
+            let mut checker = Checker::new(cube().contract().clone(), Declared::default());
+            assert_eq!(checker.check(&input, &Unwatched).unwrap_err().to_string(), line);
+        }
+    }
+}
+
+#[test]
+fn repaired_alpha_leaves_the_color_that_the_file_has() {
+    let desk = Desk::new();
+    let rgb = [[0.5, 0.4, 0.3], [0.2; 3], [0.3, 0.5, 0.4], [0.7; 3]];
+    let broken = [f32::NAN, f32::NEG_INFINITY, f32::INFINITY, 1.0];
+    let input = desk.picture("in.exr", 2, &rgb, Some(&broken));
+    let mended = desk.picture("mended.exr", 2, &rgb, Some(&[0.0, 0.0, 1.0, 1.0]));
+    let (output, expected) = (desk.path("out.exr"), desk.path("expected.exr"));
+    for (form, &repair) in forms().into_iter().zip(Repair::ALL.iter().cycle()) {
+        let options = BakeOptions { repair: Some(repair), ..options(Sample::Float) };
+        let baked = bake(cube(), form.clone(), options.clone(), &input, &output).unwrap();
+        assert_eq!(baked.repaired, 3, "{repair} {form:?}");
+        bake(cube(), form.clone(), options, &mended, &expected).unwrap();
+        assert!(made(&output) == made(&expected), "{repair} {form:?}");
+    }
 }
 
 #[test]

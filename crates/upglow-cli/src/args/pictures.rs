@@ -80,7 +80,8 @@ pub(crate) struct BakeArgs {
     pub(crate) picture: PictureArgs,
     /// What to do with texels outside 0 to 1 or not finite: clip limits each channel, scale divides
     /// the picture by its maximum, nearest moves each color to the nearest one that a material can
-    /// match [default: refuse the picture]
+    /// match; texels that are not finite become black, alpha of NaN and -inf becomes 0, that of +inf 1
+    /// [default: refuse the picture]
     #[arg(long, value_name = "NAME", value_parser = word::<Repair>(), help_heading = "Pictures")]
     pub(crate) repair: Option<Repair>,
 

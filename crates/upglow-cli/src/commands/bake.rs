@@ -337,10 +337,10 @@ fn failure(error: BakeError, input: &Path, output: &Path) -> Failure {
     match error {
         BakeError::Stopped(_) => Failure::Stopped,
         BakeError::Write(error) => files::unwritten_exr(output, error),
-        BakeError::Picture(error) => picture_failure(error, input),
-        BakeError::Texel { .. } => {
+        BakeError::Texel { .. } | BakeError::Picture(PictureError::AlphaValue { .. }) => {
             Failure::file(input, error).with("; give --repair clip, scale or nearest")
         }
+        BakeError::Picture(error) => picture_failure(error, input),
         error => Failure::file(input, error),
     }
 }

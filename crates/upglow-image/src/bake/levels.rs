@@ -150,8 +150,8 @@ fn across(rgb: &[[f32; 3]], alpha: Option<&[f32]>, to: usize) -> Vec<Sums> {
     for (i, rgb) in rgb.iter().enumerate() {
         let rgb = rgb.map(f64::from);
         let alpha = alpha.map_or(1.0, |alpha| f64::from(alpha[i]));
-        // What is not a number, or negative, covers nothing.
-        let alpha = if alpha > 0.0 { alpha.min(1.0) } else { 0.0 };
+        // Negative alpha covers nothing.
+        let alpha = alpha.clamp(0.0, 1.0);
         for (k, length) in covering(i, width, to) {
             let [r, g, b] = rgb.map(|v| v * length);
             let add = [r * alpha, g * alpha, b * alpha, length * alpha, r, g, b];

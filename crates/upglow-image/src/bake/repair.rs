@@ -7,7 +7,8 @@ use upglow_fit::StandingTable;
 
 /// How to change texels that cannot be baked as they are.
 ///
-/// Texels with a value that is NaN or infinite always become black.
+/// Texels with a value that is NaN or infinite always become black. Alpha of NaN and -∞ becomes 0, that of +∞
+/// becomes 1; finite alpha stays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Repair {
@@ -48,16 +49,23 @@ pub(super) fn greatest_value(rgb: &[[f32; 3]]) -> f32 {
 }
 
 impl Repairer<'_> {
-    /// Repairs texels in place, so that all values are in 0..=1. Returns the number of texels that
-    /// changed.
-    pub(super) fn repair(&self, rgb: &mut [[f32; 3]]) -> u64 {
+    /// Repairs texels in place, so that all values of colors are in 0..=1 and alpha is finite. Returns the
+    /// number of texels that changed.
+    pub(super) fn repair(&self, rgb: &mut [[f32; 3]], alpha: Option<&mut [f32]>) -> u64 {
         let changed = |texel: &mut [f32; 3]| {
             let is_finite = texel.iter().all(|v| v.is_finite());
             let repaired = if is_finite { self.color(*texel) } else { [0.0; 3] };
-            u64::from(std::mem::replace(texel, repaired) != repaired)
+            std::mem::replace(texel, repaired) != repaired
         };
-        let parts = rgb.par_chunks_mut(REPAIRED_TOGETHER);
-        parts.map(|part| part.iter_mut().map(changed).sum::<u64>()).sum()
+        let texels = rgb.par_iter_mut().with_min_len(REPAIRED_TOGETHER);
+        let count = match alpha {
+            Some(alpha) => texels
+                .zip(alpha)
+                .filter_map(|(rgb, a)| (changed(rgb) | made_finite(a)).then_some(()))
+                .count(),
+            None => texels.filter_map(|rgb| changed(rgb).then_some(())).count(),
+        };
+        count as u64
     }
 
     fn color(&self, rgb: [f32; 3]) -> [f32; 3] {
@@ -67,6 +75,15 @@ impl Repairer<'_> {
             Repair::Nearest => nearest(rgb, self.table),
         }
     }
+}
+
+/// Makes alpha finite; returns whether it was not.
+fn made_finite(alpha: &mut f32) -> bool {
+    let is_finite = alpha.is_finite();
+    if !is_finite {
+        *alpha = if *alpha > 0.0 { 1.0 } else { 0.0 };
+    }
+    !is_finite
 }
 
 fn clamped(value: f32) -> f32 {
@@ -134,14 +151,14 @@ mod tests {
         ) {
             for &repair in Repair::ALL {
                 let mut rgb = texels.clone();
-                let found = repairer(repair, greatest_value(&rgb)).repair(&mut rgb);
+                let found = repairer(repair, greatest_value(&rgb)).repair(&mut rgb, None);
                 prop_assert!(rgb.as_flattened().iter().all(|v| (0.0..=1.0).contains(v)));
                 for (before, after) in texels.iter().zip(&rgb) {
                     prop_assert!(before.iter().all(|v| v.is_finite()) || *after == [0.0; 3]);
                 }
                 let changed = texels.iter().zip(&rgb).filter(|(a, b)| a != b).count();
                 prop_assert_eq!(found, changed as u64);
-                let again = repairer(repair, greatest_value(&rgb)).repair(&mut rgb);
+                let again = repairer(repair, greatest_value(&rgb)).repair(&mut rgb, None);
                 prop_assert_eq!(again, 0, "{}", repair);
             }
         }
@@ -149,8 +166,33 @@ mod tests {
         #[test]
         fn the_nearest_is_reachable_by_some_material(rgb in prop::array::uniform3(-0.5..3.0_f32)) {
             let mut texel = [rgb];
-            repairer(Repair::Nearest, 0.0).repair(&mut texel);
+            repairer(Repair::Nearest, 0.0).repair(&mut texel, None);
             prop_assert!(is_reachable(texel[0], table()), "{rgb:?} {texel:?}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn after_any_repair_alpha_is_finite_and_texels_that_changed_are_counted_once(
+            texels in prop::collection::vec((prop::array::uniform3(any_value()), any_value()), 1..40),
+        ) {
+            let (before, alphas): (Vec<_>, Vec<_>) = texels.into_iter().unzip();
+            for &repair in Repair::ALL {
+                let (mut rgb, mut alpha) = (before.clone(), alphas.clone());
+                let repairer = repairer(repair, greatest_value(&rgb));
+                let found = repairer.repair(&mut rgb, Some(&mut alpha));
+                let mut changed = 0;
+                for i in 0..rgb.len() {
+                    let expected = match alphas[i] {
+                        f32::INFINITY => 1.0,
+                        a if a.is_finite() => a,
+                        _ => 0.0,
+                    };
+                    prop_assert_eq!(alpha[i], expected);
+                    changed += u64::from(before[i] != rgb[i] || alphas[i] != alpha[i]);
+                }
+                prop_assert_eq!(found, changed, "{}", repair);
+            }
         }
     }
 
@@ -159,7 +201,7 @@ mod tests {
         let good = [[0.0; 3], [1.0; 3], [0.2, 0.3, 0.4], [0.9, 0.0, 0.9]];
         for &repair in Repair::ALL {
             let mut rgb = good;
-            let found = repairer(repair, greatest_value(&rgb)).repair(&mut rgb);
+            let found = repairer(repair, greatest_value(&rgb)).repair(&mut rgb, None);
             assert_eq!((rgb, found), (good, 0), "{repair}");
         }
     }
@@ -168,7 +210,7 @@ mod tests {
     fn scaling_keeps_the_ratios_and_makes_the_greatest_value_one() {
         let mut rgb = [[2.0, 1.0, 0.5], [-1.0, 4.0, f32::INFINITY], [0.0, 4.0, 1.0]];
         let greatest = greatest_value(&rgb);
-        let found = repairer(Repair::Scale, greatest).repair(&mut rgb);
+        let found = repairer(Repair::Scale, greatest).repair(&mut rgb, None);
         assert_eq!(rgb, [[0.5, 0.25, 0.125], [0.0; 3], [0.0, 1.0, 0.25]]);
         assert_eq!(found, 3);
     }

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use upglow_color::rounding::to_single;
 
 use super::encoding::Encoding;
+use super::error::PictureError;
 
 /// Some rows of a picture.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,7 +18,7 @@ pub struct Band {
     /// Red, green, blue of each pixel, row by row, as stored: integers as fractions, 0..=1; floats
     /// unchanged, including NaN and infinities. Gray is three equal numbers.
     pub rgb: Vec<[f32; 3]>,
-    /// Alpha of each pixel, 0..=1, if the picture has it.
+    /// Alpha of each pixel, if the picture has it, as stored: floats may be any, including NaN and infinities.
     pub alpha: Option<Vec<f32>>,
 }
 
@@ -28,6 +29,18 @@ impl Band {
     /// Number of rows.
     pub fn rows(&self) -> usize {
         self.rgb.len().checked_div(self.width).unwrap_or(0)
+    }
+
+    /// Refuses alpha that is NaN or infinite.
+    ///
+    /// # Errors
+    ///
+    /// [`PictureError::AlphaValue`] names the first such pixel.
+    pub(crate) fn check_alpha(&self) -> Result<(), PictureError> {
+        let alpha = self.alpha.as_deref().unwrap_or(&[]);
+        let Some(first) = alpha.iter().position(|a| !a.is_finite()) else { return Ok(()) };
+        let (x, y) = (first % self.width, self.first_row + first / self.width);
+        Err(PictureError::AlphaValue { x, y, found: alpha[first] })
     }
 
     /// Some columns of these rows.

@@ -96,6 +96,16 @@ pub enum PictureError {
          straight or associated alpha, or none"
     )]
     Alpha,
+    /// Alpha that is NaN or infinite.
+    #[error("texel {x},{y}: alpha is {found}, expected a finite number")]
+    AlphaValue {
+        /// Column, from 0 at the left.
+        x: usize,
+        /// Row, from 0 at the top.
+        y: usize,
+        /// The alpha.
+        found: f32,
+    },
 }
 
 impl PictureError {

@@ -89,8 +89,8 @@ impl LinearPicture {
     }
 
     /// The next rows, like [`Picture::read_band`], as linear light in the picture's own space or that of
-    /// [`LinearPicture::convert_to`]. Colors are not multiplied by alpha; where alpha is 0, they are
-    /// those that the file has.
+    /// [`LinearPicture::convert_to`]. Colors are not multiplied by alpha; where alpha is 0 or not finite,
+    /// they are those that the file has.
     ///
     /// # Errors
     ///
@@ -100,7 +100,7 @@ impl LinearPicture {
         // Encoded colors are multiplied by alpha as they are stored, so they are divided first.
         if let (Some(Alpha::Associated), Some(alpha)) = (self.picture.alpha(), &band.alpha) {
             band.rgb.par_iter_mut().zip(alpha).for_each(|(rgb, a)| {
-                if *a != 0.0 {
+                if *a != 0.0 && a.is_finite() {
                     *rgb = rgb.map(|v| v / a);
                 }
             });
