@@ -1,8 +1,10 @@
 //! Colors of a PNG file.
 
+mod chunks;
+
 use std::fmt;
 use std::fs::File;
-use std::io::BufReader;
+use std::io::{BufReader, Seek as _};
 use std::ops::Range;
 use std::path::Path;
 
@@ -12,6 +14,7 @@ use png::{
 use upglow::open_input;
 use upglow_color::RgbSpace;
 
+use self::chunks::Chunks;
 use super::chromaticities::space;
 use super::encoding::Encoding;
 use super::error::PictureError;
@@ -28,6 +31,8 @@ pub(super) struct PngPicture {
     row: Vec<u8>,
     channels: usize,
     deep: bool,
+    /// The color of each index, if pixels are indices.
+    palette: Option<Palette>,
     /// All rows of an interlaced picture, once it has been read.
     whole: Option<Vec<u8>>,
 }
@@ -48,15 +53,27 @@ impl PngPicture {
         // A damaged chunk of colors must not count as absent.
         options.set_skip_ancillary_crc_failures(false);
         options.set_ignore_text_chunk(true);
-        let file = BufReader::new(open_input(path)?);
+        let mut file = BufReader::new(open_input(path)?);
+        let chunks = Chunks::read(&mut file)?;
+        let size = chunks.size;
+        check_size(size)?;
+        let by_code_points = chunks.code_points.map(of_code_points).transpose()?;
+        file.rewind()?;
         let mut decoder = Decoder::new_with_options(file, options);
         decoder.set_limits(png::Limits { bytes: CHUNK_BYTES });
-        decoder.set_transformations(Transformations::EXPAND);
+        // The decoder makes black of indices that the palette lacks.
+        decoder.set_transformations(match chunks.is_indexed {
+            true => Transformations::IDENTITY,
+            false => Transformations::EXPAND,
+        });
         let reader = decoder.read_info().map_err(refusal)?;
         let info = reader.info();
-        let size = [info.width as usize, info.height as usize];
-        check_size(size)?;
-        let (color, depth) = reader.output_color_type();
+        chunks.check_all_are_in(info)?;
+        let palette = chunks.is_indexed.then(|| Palette::of(info)).transpose()?;
+        let (mut color, depth) = reader.output_color_type();
+        if chunks.is_indexed {
+            color = if info.trns.is_some() { ColorType::Rgba } else { ColorType::Rgb };
+        }
         let channels = color.samples();
         let row_bytes = reader.output_line_size(info.width).unwrap_or(usize::MAX) as u64;
         if info.interlaced {
@@ -65,7 +82,7 @@ impl PngPicture {
         let has_alpha = matches!(color, ColorType::GrayscaleAlpha | ColorType::Rgba);
         let facts = Facts {
             size,
-            color: stated_color(info)?,
+            color: by_code_points.map_or_else(|| stated_color(info), Ok)?,
             last_sample: match has_alpha {
                 true => LastSample::Alpha(Alpha::Straight),
                 false => LastSample::Absent,
@@ -78,17 +95,74 @@ impl PngPicture {
         };
         let row = vec![0; usize::try_from(row_bytes).unwrap_or(0)];
         let deep = depth == BitDepth::Sixteen;
-        Ok((Box::new(Self { reader, row, channels, deep, whole: None }), facts))
+        Ok((Box::new(Self { reader, row, channels, deep, palette, whole: None }), facts))
     }
 
-    fn whole(&mut self) -> Result<&[u8], PictureError> {
+    fn decode_whole(&mut self) -> Result<(), PictureError> {
         if self.whole.is_none() {
             let mut bytes = vec![0; self.row.len() * self.reader.info().height as usize];
             self.reader.next_frame(&mut bytes).map_err(refusal)?;
             self.reader.finish().map_err(refusal)?;
             self.whole = Some(bytes);
         }
-        Ok(self.whole.as_deref().unwrap_or(&[]))
+        Ok(())
+    }
+
+    /// Adds the samples of a row as fractions of the greatest.
+    fn add_row(&self, row: &[u8], to: &mut Vec<f32>) -> Result<(), PictureError> {
+        match &self.palette {
+            Some(palette) => {
+                let width = self.reader.info().width as usize;
+                return palette.add_row(row, width, to);
+            }
+            None if self.deep => {
+                add_words(row.as_chunks().0.iter().map(|b| u16::from_be_bytes(*b)), to);
+            }
+            None => add_bytes(row, to),
+        }
+        Ok(())
+    }
+}
+
+/// The colors of indices.
+struct Palette {
+    /// Red, green and blue of each, and alpha if the file has it, as fractions.
+    samples: Vec<f32>,
+    channels: usize,
+    /// Bits of an index.
+    bits: usize,
+}
+
+impl Palette {
+    fn of(info: &Info<'_>) -> Result<Self, PictureError> {
+        let rgb = info.palette.as_deref().unwrap_or(&[]).as_chunks::<3>().0;
+        let alpha = info.trns.as_deref();
+        let opacities = alpha.map_or(0, <[u8]>::len);
+        if opacities > rgb.len() {
+            return Err(damaged(format!("{opacities} alphas for {} colors", rgb.len())));
+        }
+        let mut samples = Vec::new();
+        for (i, rgb) in rgb.iter().enumerate() {
+            add_bytes(rgb, &mut samples);
+            if let Some(alpha) = alpha {
+                add_bytes(&[alpha.get(i).copied().unwrap_or(u8::MAX)], &mut samples);
+            }
+        }
+        let channels = 3 + usize::from(alpha.is_some());
+        Ok(Self { samples, channels, bits: usize::from(info.bit_depth as u8) })
+    }
+
+    fn add_row(&self, row: &[u8], width: usize, to: &mut Vec<f32>) -> Result<(), PictureError> {
+        let together = 8 / self.bits;
+        for i in 0..width {
+            let below = 8 - self.bits * (1 + i % together);
+            let index = usize::from(row[i / together] >> below) & ((1 << self.bits) - 1);
+            let at = index * self.channels;
+            let color = self.samples.get(at..at + self.channels);
+            let outside = || damaged(format!("color {index}, which its map lacks"));
+            to.extend(color.ok_or_else(outside)?);
+        }
+        Ok(())
     }
 }
 
@@ -96,14 +170,16 @@ impl Source for PngPicture {
     fn read(&mut self, rows: Range<usize>) -> Result<Pixels, PictureError> {
         let mut samples = Vec::with_capacity(rows.len() * self.row.len());
         if self.reader.info().interlaced {
-            let (row_bytes, deep) = (self.row.len(), self.deep);
-            let bytes = &self.whole()?[rows.start * row_bytes..rows.end * row_bytes];
-            add_samples(bytes, deep, &mut samples);
+            self.decode_whole()?;
+            let whole = self.whole.as_deref().unwrap_or(&[]);
+            for row in whole.chunks_exact(self.row.len()).skip(rows.start).take(rows.len()) {
+                self.add_row(row, &mut samples)?;
+            }
         } else {
             let is_last = rows.end == self.reader.info().height as usize;
             for _ in rows {
                 self.reader.read_row(&mut self.row).map_err(refusal)?;
-                add_samples(&self.row, self.deep, &mut samples);
+                self.add_row(&self.row, &mut samples)?;
             }
             if is_last {
                 // The checksums of the last chunk come after its last row.
@@ -114,37 +190,39 @@ impl Source for PngPicture {
     }
 }
 
-/// Adds samples of 8 or 16 bits as fractions of the greatest.
-fn add_samples(bytes: &[u8], deep: bool, to: &mut Vec<f32>) {
-    if deep {
-        add_words(bytes.as_chunks().0.iter().map(|b| u16::from_be_bytes(*b)), to);
-    } else {
-        add_bytes(bytes, to);
-    }
-}
-
 /// What is wrong with a file that the decoder refuses.
 fn refusal(error: DecodingError) -> PictureError {
     let found = match error {
         DecodingError::IoError(error) => return PictureError::read(error, FORMAT),
         DecodingError::LimitsExceeded => {
-            let (found, expected) = (u64::MAX, CHUNK_BYTES as u64);
-            return PictureError::Memory { what: "a chunk of its header", found, expected };
+            let most = CHUNK_BYTES >> 20;
+            return PictureError::pixels(
+                format!("a chunk of over {most} MiB before the pixels"),
+                "smaller ones: save the picture without it",
+            );
         }
         _ => "its data or a checksum is wrong",
     };
+    damaged(found)
+}
+
+fn damaged(found: impl Into<String>) -> PictureError {
     PictureError::Damaged { found: found.into(), format: FORMAT }
 }
 
 const FORMAT: &str = "PNG";
 
-/// What a file states, by the chunk of the highest priority: cICP, iCCP, sRGB, then gAMA and cHRM.
-fn stated_color(info: &Info<'_>) -> Result<StatedColor, PictureError> {
-    if let Some(points) = info.coding_independent_code_points {
-        let (primaries, transfer) = (points.color_primaries, points.transfer_function);
-        let is_full_range = points.is_video_full_range_image;
-        return code_points::stated(primaries, transfer, points.matrix_coefficients, is_full_range);
+fn of_code_points(
+    [primaries, transfer, matrix, range]: [u8; 4],
+) -> Result<StatedColor, PictureError> {
+    match range {
+        0 | 1 => code_points::stated(primaries, transfer, matrix, range == 1),
+        _ => Err(damaged(format!("its cICP chunk has {range} in place of 0 or 1 for its range"))),
     }
+}
+
+/// What a file without cICP states, by the chunk of the highest priority: iCCP, sRGB, then gAMA and cHRM.
+fn stated_color(info: &Info<'_>) -> Result<StatedColor, PictureError> {
     if let Some(profile) = &info.icc_profile {
         return icc::stated(profile);
     }

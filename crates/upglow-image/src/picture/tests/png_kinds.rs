@@ -180,3 +180,136 @@ fn the_orientation_in_exif_is_followed() {
         assert_eq!(rgb[SIZE[1] - 1], first);
     }
 }
+
+/// A file with other chunks in place of one.
+fn with(bytes: &[u8], name: &[u8; 4], chunks: &[u8]) -> Vec<u8> {
+    let at = bytes.windows(4).position(|window| window == name).unwrap() - 4;
+    let length = u32::from_be_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
+    [&bytes[..at], chunks, &bytes[at + 12 + length..]].concat()
+}
+
+/// A profile that is compressed as PNG asks, with these bytes before it.
+fn packed(head: &[u8], profile: &[u8]) -> Vec<u8> {
+    [head, &miniz_oxide::deflate::compress_to_vec_zlib(profile, 1)].concat()
+}
+
+#[test]
+fn a_damaged_chunk_of_colors_is_refused_by_name_whatever_follows_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("x.png");
+    let lengths = |right: usize| (0..40).filter(move |length| *length != right);
+    let zeros = |right| lengths(right).map(|length| vec![1; length]);
+    let mut damaged: Vec<(&[u8; 4], Vec<u8>)> = Vec::new();
+    for (name, right) in [(b"cICP", 4), (b"sRGB", 1), (b"gAMA", 4), (b"cHRM", 32), (b"tRNS", 6)] {
+        damaged.extend(zeros(right).map(|content| (name, content)));
+    }
+    damaged.extend((4..=255).map(|intent| (b"sRGB", vec![intent])));
+    damaged.extend((2..=255).map(|flag| (b"cICP", vec![1, 13, 0, flag])));
+    damaged.push((b"gAMA", vec![0; 4]));
+    let whole = packed(b"a\0\0", &[7; 500]);
+    damaged.extend((0..whole.len() - 4).map(|length| (b"iCCP", whole[..length].to_vec())));
+    damaged.extend((1..=255).map(|method| (b"iCCP", packed(&[b'a', 0, method], &[7; 500]))));
+    damaged.push((b"iCCP", packed(b"\0\0", &[7; 500])));
+    damaged.push((b"iCCP", packed(&[b"a".repeat(81), vec![0, 0]].concat(), &[7; 500])));
+    damaged.push((b"iCCP", packed(b"a\0\0", &vec![0; 65 << 20])));
+    let srgb = chunk(b"sRGB", &[0]);
+    for (name, content) in damaged {
+        let bad = chunk(name, &content);
+        let text = str::from_utf8(name).unwrap();
+        let others = if name == b"sRGB" { chunk(b"gAMA", &[0, 0, 177, 143]) } else { srgb.clone() };
+        for chunks in [[&bad[..], &others].concat(), [&others[..], &bad].concat(), bad.clone()] {
+            let found = read(&path, &file(2, 3, 8, false, &chunks));
+            let message = found.expect_err(&format!("{text}: {content:?}"));
+            let begin = format!("damaged: its {text} chunk ");
+            assert!(
+                message.starts_with(&begin),
+                "{message}: {:?}",
+                &content[..content.len().min(9)]
+            );
+        }
+    }
+}
+
+#[test]
+fn a_chunk_of_colors_that_is_there_twice_or_after_the_palette_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("x.png");
+    let contents: [(&[u8; 4], Vec<u8>); 6] = [
+        (b"cICP", vec![1, 13, 0, 1]),
+        (b"iCCP", packed(b"a\0\0", &[7; 500])),
+        (b"sRGB", vec![0]),
+        (b"gAMA", vec![0, 0, 177, 143]),
+        (b"cHRM", vec![1; 32]),
+        (b"tRNS", vec![0; 6]),
+    ];
+    for (name, content) in contents {
+        let once = chunk(name, &content);
+        let message = read(&path, &file(2, 3, 8, false, &once.repeat(2))).unwrap_err();
+        assert!(
+            message.starts_with(&format!("damaged: two {} chunks", str::from_utf8(name).unwrap()))
+        );
+    }
+    let late = [chunk(b"PLTE", &[0; 3]), chunk(b"cICP", &[1, 13, 0, 1])].concat();
+    let message = read(&path, &file(2, 3, 8, false, &late)).unwrap_err();
+    assert!(
+        message.starts_with("damaged: its cICP chunk is invalid or in a wrong place"),
+        "{message}"
+    );
+}
+
+#[test]
+fn an_index_beyond_the_palette_is_refused_and_those_within_have_their_alpha() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("x.png");
+    for bits in [1, 2, 4, 8] {
+        for is_interlaced in [false, true] {
+            let whole = file(3, 1, bits, is_interlaced, &[]);
+            let pixels = (0..SIZE[0] * SIZE[1]).map(|i| code([i % SIZE[0], i / SIZE[0]], 0, bits));
+            let indices: Vec<u64> = pixels.collect();
+            let greatest = *indices.iter().max().unwrap();
+            for colors in 1..=1 << bits {
+                let map: Vec<u8> = (0..colors).flat_map(palette).collect();
+                let alpha: Vec<u8> =
+                    (0..colors.div_ceil(2)).map(|i| u8::try_from(i * 5 % 256).unwrap()).collect();
+                let chunks = [chunk(b"PLTE", &map), chunk(b"tRNS", &alpha)].concat();
+                let found = read(&path, &with(&whole, b"PLTE", &chunks));
+                if colors <= greatest {
+                    let message = found.unwrap_err();
+                    let index = message.strip_prefix("damaged: color ").expect(&message);
+                    let (index, _) = index.split_once(", which its map lacks").unwrap();
+                    let index: u64 = index.parse().unwrap();
+                    assert!(index >= colors && indices.contains(&index), "{message}");
+                    continue;
+                }
+                let (rgb, alphas) = found.unwrap();
+                for (i, &index) in indices.iter().enumerate() {
+                    let opacity = alpha.get(index as usize).copied().unwrap_or(255);
+                    assert_eq!(rgb[i], palette(index).map(|v| f32::from(v) / 255.0));
+                    assert_eq!(alphas[i], f32::from(opacity) / 255.0);
+                }
+            }
+            for map in [vec![], vec![0; 4], vec![0; 5]] {
+                let message =
+                    read(&path, &with(&whole, b"PLTE", &chunk(b"PLTE", &map))).unwrap_err();
+                assert!(message.starts_with("damaged: "), "{message}");
+            }
+            let chunks = [chunk(b"PLTE", &[0; 3]), chunk(b"tRNS", &[0; 2])].concat();
+            let message = read(&path, &with(&whole, b"PLTE", &chunks)).unwrap_err();
+            assert!(message.starts_with("damaged: 2 alphas for 1 colors"), "{message}");
+        }
+    }
+}
+
+#[test]
+fn a_size_beyond_the_limit_is_told_as_a_size() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("x.png");
+    let whole = file(2, 3, 8, false, &[]);
+    let sides = [0, 1 << 17 | 1, 1 << 20, 1 << 30, i32::MAX.cast_unsigned(), u32::MAX];
+    for [width, height] in sides.iter().flat_map(|&side| [[side, 9], [9, side], [side; 2]]) {
+        let mut header = [width.to_be_bytes(), height.to_be_bytes()].concat();
+        header.extend([16, 6, 0, 0, 0]);
+        let message = read(&path, &with(&whole, b"IHDR", &chunk(b"IHDR", &header))).unwrap_err();
+        assert_eq!(message, format!("{width} by {height} pixels, expected 1 to 131072 a side"));
+    }
+}
