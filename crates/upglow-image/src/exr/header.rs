@@ -28,6 +28,8 @@ const MAX_ATTRIBUTE: u32 = 64 << 20;
 const MAX_HEADER: u64 = 256 << 20;
 /// Most rows or columns: four times the largest textures; sizes in bytes stay far from overflow.
 pub(crate) const MAX_SIDE: usize = 1 << 17;
+/// `OpenEXR` itself refuses windows with a corner here or farther from the origin.
+const FAR_CORNER: i32 = i32::MAX / 2;
 /// Most parts of a file: far beyond the views and layers of any production file.
 const MAX_PARTS: usize = 4096;
 
@@ -92,6 +94,11 @@ impl Window {
             usize::try_from(pixels).ok().filter(|&side| side > 0)
         };
         Some([side(0)?, side(1)?])
+    }
+
+    fn is_near(self) -> bool {
+        let corners = [self.min, self.max];
+        corners.as_flattened().iter().all(|v| v.unsigned_abs() < FAR_CORNER.unsigned_abs())
     }
 
     fn to_bytes(self) -> Vec<u8> {
@@ -244,18 +251,23 @@ fn build(mut attributes: Attributes, version: u32) -> Result<Header, ExrError> {
         None => Err(ExrError::header(name, "absent", kind)),
     };
     let stated = |name, kind| attributes.contains_key(name).then(|| value(name, kind)).transpose();
-    let window = |name| {
+    let window = |name, most: usize| {
         let bytes = value(name, "box2i")?;
-        Window::from_bytes(bytes)
-            .ok_or_else(|| ExrError::header(name, format!("{} bytes", bytes.len()), "16 bytes"))
+        let window = Window::from_bytes(bytes)
+            .ok_or_else(|| ExrError::header(name, format!("{} bytes", bytes.len()), "16 bytes"))?;
+        let size = window.size().filter(|size| size.iter().all(|&side| side <= most));
+        let wrong = |expected: String| {
+            let Window { min, max } = window;
+            ExrError::header(name, format!("{min:?} to {max:?}"), expected)
+        };
+        let size = size.ok_or_else(|| wrong(format!("1 to {most} pixels a side")))?;
+        if !window.is_near() {
+            return Err(wrong(format!("corners nearer to 0 than {FAR_CORNER}")));
+        }
+        Ok((window, size))
     };
-    let data = window("dataWindow")?;
-    let size = data.size().filter(|size| size.iter().all(|&side| side <= MAX_SIDE));
-    let Some(size) = size else {
-        let Window { min, max } = data;
-        let expected = format!("1 to {MAX_SIDE} pixels a side");
-        return Err(ExrError::header("dataWindow", format!("{min:?} to {max:?}"), expected));
-    };
+    let (data, size) = window("dataWindow", MAX_SIDE)?;
+    let (display, _) = window("displayWindow", usize::MAX)?;
     let tiled = match stated("type", "string")? {
         Some(b"scanlineimage") => false,
         Some(b"tiledimage") => true,
@@ -270,7 +282,7 @@ fn build(mut attributes: Attributes, version: u32) -> Result<Header, ExrError> {
         channels: parse_channels(value("channels", "chlist")?)?,
         method: parse_method(value("compression", "compression")?)?,
         data,
-        display: window("displayWindow")?,
+        display,
         size,
         tiles: tiles.map(|(size, _)| size),
         is_mipmap: tiles.is_some_and(|(_, is_mipmap)| is_mipmap),
@@ -309,10 +321,16 @@ fn parse_count(bytes: &[u8]) -> Result<usize, ExrError> {
 }
 
 fn parse_method(bytes: &[u8]) -> Result<Method, ExrError> {
-    let method = if let [code] = bytes { METHODS.get(usize::from(*code)) } else { None };
-    method.copied().ok_or_else(|| {
-        ExrError::header("compression", format!("code {bytes:?}"), "a code from 0 to 9")
-    })
+    let found = match *bytes {
+        [code] => match (METHODS.get(usize::from(code)), code) {
+            (Some(method), _) => return Ok(*method),
+            (None, 10 | 11) => format!("HTJ2K (code {code})"),
+            (None, _) => format!("of code {code}"),
+        },
+        _ => format!("of {} bytes", bytes.len()),
+    };
+    let names = METHODS.map(method_name).join(", ");
+    Err(ExrError::invalid(format!("compression is {found}"), format!("one of {names}")))
 }
 
 /// The size of tiles, and whether there are all levels, rounded down.
@@ -546,7 +564,62 @@ mod tests {
         };
         let huge = message(Window { min: [0, 0], max: [i32::MAX, 3] });
         assert!(huge.ends_with("expected 1 to 131072 pixels a side"), "{huge}");
+        let far = message(Window { min: [FAR_CORNER - 2, 0], max: [FAR_CORNER, 3] });
+        assert_eq!(
+            far,
+            "dataWindow is [1073741821, 0] to [1073741823, 3], expected corners nearer to 0 than 1073741823"
+        );
         let inverted = message(Window { min: [0, i32::MAX], max: [5, i32::MIN] });
         assert!(inverted.starts_with("dataWindow is [0, 2147483647] to"), "{inverted}");
+    }
+
+    #[test]
+    fn windows_are_read_exactly_where_openexr_reads_them() {
+        let good = Window { min: [3, -4], max: [9, 5] };
+        let read = |windows: [Window; 2]| {
+            let rows = Arrangement::Rows;
+            let bytes = print(&[], Method::Uncompressed, windows, rows, &Attributes::new());
+            Headers::read(&bytes[..]).map(|_| ()).map_err(|error| error.to_string())
+        };
+        let corners = [-1, 1].map(|sign| [0, 1, 2, 9, 1 << 20, FAR_CORNER].map(|off| (sign, off)));
+        for &(sign, off) in corners.as_flattened() {
+            let at = sign * (FAR_CORNER - off);
+            for axis in [0, 1] {
+                let mut window = Window { min: [0; 2], max: [1; 2] };
+                (window.min[axis], window.max[axis]) =
+                    if at < 0 { (at, at + 1) } else { (at - 1, at) };
+                for (name, windows) in [("data", [window, good]), ("display", [good, window])] {
+                    let found = read(windows);
+                    let far = format!("{name}Window is {:?} to {:?}, ", window.min, window.max);
+                    match off {
+                        0 => assert!(found.unwrap_err().starts_with(&far)),
+                        _ => assert_eq!(found, Ok(()), "{far}"),
+                    }
+                }
+                let mut empty = good;
+                empty.max[axis] = empty.min[axis] - 1 - (off & 0xff);
+                assert!(read([good, empty]).unwrap_err().starts_with("displayWindow is "));
+            }
+        }
+    }
+
+    #[test]
+    fn other_methods_are_refused_with_those_that_are_read() {
+        for code in 0..=u8::MAX {
+            let found = parse_method(&[code]).map_err(|error| error.to_string());
+            let of = match code {
+                0..=9 => {
+                    assert!(found.is_ok());
+                    continue;
+                }
+                10 | 11 => format!("HTJ2K (code {code})"),
+                _ => format!("of code {code}"),
+            };
+            let names = "uncompressed, RLE, ZIPS, ZIP, PIZ, PXR24, B44, B44A, DWAA, DWAB";
+            assert_eq!(found, Err(format!("compression is {of}, expected one of {names}")));
+        }
+        assert!(
+            parse_method(&[0, 0]).unwrap_err().to_string().starts_with("compression is of 2 bytes")
+        );
     }
 }
