@@ -129,8 +129,7 @@ fn invalid(found: impl Into<String>, expected: &'static str) -> SpectralNameErro
 
 /// One wavelength or frequency, as `550,000000nm` or `545THz`, in nm.
 fn wavelength_nm(text: &str) -> Result<f64, SpectralNameError> {
-    let end = text.find(|c: char| !(c.is_ascii_digit() || c == ',')).unwrap_or(text.len());
-    let (number, unit) = number_and_unit(text, end);
+    let (number, unit) = number_and_unit(text);
     if number.is_empty() {
         return Err(invalid(format!("no number before {unit:?}"), "one as 550,000000nm"));
     }
@@ -163,7 +162,8 @@ fn prefix_power(prefix: &str) -> Option<i32> {
 }
 
 /// Splits before the unit; an exponent, as in `5,5e2nm`, belongs to the number.
-fn number_and_unit(text: &str, end: usize) -> (&str, &str) {
+pub(crate) fn number_and_unit(text: &str) -> (&str, &str) {
+    let end = text.find(|c: char| !(c.is_ascii_digit() || c == ',')).unwrap_or(text.len());
     let (number, rest) = text.split_at(end);
     let exponent = rest.strip_prefix(['e', 'E']).filter(|_| !number.is_empty());
     let Some(exponent) = exponent else { return (number, rest) };

@@ -13,7 +13,7 @@ use self::findings::{Lint, Rule};
 use self::samples::check_samples;
 use super::channel::{
     BISPECTRAL_UNIT, EMISSIVE_UNITS, LAYOUT_VERSION, LAYOUT_VERSION_VALUE, SpectralChannel,
-    key_order, rising_pairs, stated_unit,
+    key_order, number_and_unit, rising_pairs, stated_unit,
 };
 use super::compact::CompactLayout;
 use crate::exr::error::ExrError;
@@ -154,8 +154,7 @@ fn check_duplicates(channels: &[ListedChannel], lint: &mut Lint) {
 
 fn check_units(channels: &[ListedChannel], lint: &mut Lint) {
     let units = channels.iter().flat_map(|found| found.name.split('.').skip(1));
-    let digits = |c: char| c.is_ascii_digit() || c == ',';
-    let mut units: Vec<&str> = units.map(|part| part.trim_start_matches(digits)).collect();
+    let mut units: Vec<&str> = units.map(|part| number_and_unit(part).1).collect();
     units.sort_unstable();
     units.dedup();
     if units.len() > 1 {

@@ -174,6 +174,11 @@ fn each_broken_rule_is_found_and_no_other() {
     assert_eq!(rules(&below, 0.25), [Rule::Stokes]);
     assert_eq!(rules(&["T.400nm", "T.400,000nm"], 0.25), [Rule::Duplicate]);
     assert_eq!(rules(&["T.400nm", "T.0,5um"], 0.25), [Rule::Units]);
+    // An exponent is no part of the unit.
+    for other in ["5e2", "5E2", "5e+2", "0,5e3", "50000e-2", "5,00E02", "500,0"] {
+        assert_eq!(rules(&["T.400nm", &format!("T.{other}nm")], 0.25), [], "{other}");
+        assert_eq!(rules(&["T.400nm", &format!("T.{other}pm")], 0.25), [Rule::Units], "{other}");
+    }
     assert_eq!(rules(&["T.400nm", "T.410nm", "T.420nm", "T.400nm.410nm"], 0.25), [Rule::Pairs]);
     assert_eq!(rules(&["T.400nm", "T.400nm.410nm"], 0.25), [Rule::Band]);
     assert_eq!(rules(&["S0.400nm", "S1.410nm"], 0.25), [Rule::EmissiveUnits, Rule::Polarization]);
