@@ -64,7 +64,9 @@ pub use picture::encoding::{Encoding, ParametricCurve};
 pub use picture::error::PictureError;
 pub use picture::excerpt::Excerpt;
 pub use picture::interop::InteropSpace;
-pub use picture::stated::{Declared, DeclaredAlpha, Found, Interpretation, Missing, Word};
+pub use picture::stated::{
+    Declared, DeclaredAlpha, Found, Interpretation, Missing, StatementError, Word,
+};
 pub use picture::{FORMATS, Picture, SUFFIXES};
 pub use spectral::error::FormError;
 pub use spectral::lint::findings::{Finding, Lint, Severity};

@@ -21,8 +21,8 @@ pub(crate) struct PictureArgs {
     /// [default: what each file states]
     #[arg(long, value_parser = picture_space)]
     space: Option<PictureSpace>,
-    /// Transfer curve of the pictures, whatever their files state: linear, srgb, bt709, or a gamma such
-    /// as 2.2 [default: what each file states]
+    /// Transfer curve of the pictures, whatever their files state: linear, srgb, bt709, or a gamma from
+    /// 0.1 to 10 such as 2.2 [default: what each file states]
     #[arg(long, value_name = "NAME|GAMMA")]
     encoding: Option<Encoding>,
     /// Whether the colors of the pictures are multiplied by their alpha: straight, associated, or none

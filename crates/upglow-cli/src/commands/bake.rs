@@ -9,7 +9,7 @@ use upglow_color::{Choice, Grid};
 use upglow_fit::KindCounts;
 use upglow_image::{
     BakeError, BakeOptions, Baked, Baker, DeclaredAlpha, Form, Incident, Interpretation, Layout,
-    Missing, PictureError,
+    Missing, PictureError, StatementError,
 };
 use upglow_terminal::{Console, Failure, Report};
 
@@ -357,6 +357,10 @@ pub(super) fn picture_failure(error: PictureError, input: &Path) -> Failure {
             };
             format!("; if it is {name}, type: {} {options}", typed())
         }
+        PictureError::Statement(error) => match **error {
+            StatementError::Chromaticities { .. } => "; give --space".into(),
+            _ => "; give --encoding".into(),
+        },
         PictureError::Alpha => "; give --alpha straight, associated or none".into(),
         PictureError::Layers { .. } => "; give --layer NAME".into(),
         PictureError::NoLayers => "; leave --layer out".into(),

@@ -2,26 +2,44 @@
 
 use upglow_color::RgbSpace;
 
+use super::stated::{Stated, StatementError};
+
 /// Greatest difference from a built-in space. Files round chromaticities to four or five digits, and
 /// any two built-in spaces differ by 0.005 or more in some number.
 const SAME: f64 = 2e-4;
 
 /// The space of these primaries (red, green, blue) and white: a built-in one if all eight numbers
-/// agree, else one named `custom`; `None` if the primaries or the white are invalid.
-pub(crate) fn space(primaries: [[f64; 2]; 3], white: [f64; 2]) -> Option<RgbSpace> {
+/// agree, else one named `custom`.
+pub(super) fn stated(
+    by: &'static str,
+    primaries: [[f64; 2]; 3],
+    white: [f64; 2],
+) -> Stated<RgbSpace> {
+    let [red, green, blue] = primaries;
+    let found = [red, green, blue, white];
     let same = |known: &RgbSpace| {
         let [red, green, blue] = known.primaries();
         let known = [red, green, blue, known.white()];
-        let found = [primaries[0], primaries[1], primaries[2], white];
         known.as_flattened().iter().zip(found.as_flattened()).all(|(a, b)| (a - b).abs() < SAME)
     };
     let mut named = RgbSpace::names().into_iter().filter_map(|name| RgbSpace::named(name).ok());
-    named.find(same).or_else(|| RgbSpace::custom("custom", primaries, white).ok())
+    let space = named.find(same).map_or_else(|| RgbSpace::custom("custom", primaries, white), Ok);
+    match space {
+        Ok(value) => Stated::yes(value, by),
+        Err(source) => Stated::invalid(StatementError::Chromaticities { by, found, source }),
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn space(primaries: [[f64; 2]; 3], white: [f64; 2]) -> Option<RgbSpace> {
+        match stated("chromaticities", primaries, white) {
+            Stated::Yes { value, .. } => Some(value),
+            _ => None,
+        }
+    }
 
     #[test]
     fn every_built_in_space_is_recognized_from_rounded_numbers() {

@@ -1,6 +1,7 @@
 //! Encodings of linear light as stored numbers.
 
 use std::fmt;
+use std::ops::RangeInclusive;
 use std::str::FromStr;
 
 use upglow_color::{UnknownChoice, srgb_decoded};
@@ -17,7 +18,7 @@ pub enum Encoding {
     Srgb,
     /// The curve of cameras in ITU-R BT.709 and BT.2020.
     Bt709,
-    /// A power: linear = stored^γ, γ > 0.
+    /// A power: linear = stored^γ, γ > 0; [`Encoding::of_gamma`] has the range of those that are read.
     Gamma(f64),
     /// A curve of an ICC profile.
     Parametric(ParametricCurve),
@@ -50,7 +51,18 @@ impl ParametricCurve {
 /// X, Y and Z of the white D65 of RGB spaces, from its chromaticity 0.3127, 0.3290.
 const D65: [f64; 3] = [0.3127 / 0.3290, 1.0, (1.0 - 0.3127 - 0.3290) / 0.3290];
 
+/// The gammas of pictures. Those of displays are from 1 to 3; beyond these, nearly all numbers become black or white.
+const GAMMAS: RangeInclusive<f64> = 0.1..=10.0;
+
 impl Encoding {
+    /// The range of gammas, for messages.
+    pub(crate) const GAMMAS: &str = "0.1 to 10";
+
+    /// The encoding of this gamma; `None` unless it is from 0.1 to 10.
+    pub fn of_gamma(gamma: f64) -> Option<Self> {
+        GAMMAS.contains(&gamma).then_some(Self::Gamma(gamma))
+    }
+
     /// Converts stored numbers to linear light.
     pub fn to_linear(self, stored: [f64; 3]) -> [f64; 3] {
         match self {
@@ -75,15 +87,14 @@ impl FromStr for Encoding {
     type Err = UnknownChoice;
 
     fn from_str(word: &str) -> Result<Self, Self::Err> {
-        let gamma = || word.parse().ok().filter(|g: &f64| g.is_finite() && *g > 0.0);
         match word {
             "linear" => Ok(Self::Linear),
             "srgb" => Ok(Self::Srgb),
             "bt709" => Ok(Self::Bt709),
-            _ => gamma().map(Self::Gamma).ok_or_else(|| UnknownChoice {
+            _ => word.parse().ok().and_then(Self::of_gamma).ok_or_else(|| UnknownChoice {
                 what: "encoding",
                 found: word.into(),
-                expected: "linear, srgb, bt709 or a gamma above 0".into(),
+                expected: format!("linear, srgb, bt709 or a gamma from {}", Self::GAMMAS),
             }),
         }
     }
@@ -150,8 +161,19 @@ mod tests {
         for word in ["linear", "srgb", "bt709", "2.2"] {
             assert_eq!(word.parse::<Encoding>().unwrap().to_string(), word);
         }
-        for word in ["", "gamma", "0", "-1", "NaN", "inf"] {
+        for word in ["", "gamma", "0", "-1", "NaN", "inf", "1e-300", "1e300", "0.0999", "10.001"] {
             assert!(word.parse::<Encoding>().is_err(), "{word}");
+        }
+        assert_eq!(Encoding::GAMMAS, format!("{} to {}", GAMMAS.start(), GAMMAS.end()));
+    }
+
+    #[test]
+    fn middle_numbers_stay_between_black_and_white_at_every_gamma() {
+        for i in 0..=100 {
+            let gamma = 0.1 * 100_f64.powf(f64::from(i) / 100.0);
+            let encoding = Encoding::of_gamma(gamma.clamp(0.1, 10.0)).unwrap();
+            let light = gray(encoding, 0.5);
+            assert!(light > 9e-4 && light < 0.94, "{gamma} {light}");
         }
     }
 }

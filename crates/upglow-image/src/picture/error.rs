@@ -2,7 +2,7 @@
 
 use std::io;
 
-use super::stated::{Found, Missing};
+use super::stated::{Found, Missing, StatementError};
 use crate::exr::error::ExrError;
 use crate::exr::header::MAX_SIDE;
 
@@ -79,6 +79,9 @@ pub enum PictureError {
         /// What the file states instead.
         found: Found,
     },
+    /// The file states an RGB space or encoding that is not valid.
+    #[error(transparent)]
+    Statement(#[from] Box<StatementError>),
     /// A curve of displays of high dynamic range.
     #[error(
         "{by} states {curve}, a curve of displays of high dynamic range, expected linear light or the \

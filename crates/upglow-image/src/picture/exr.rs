@@ -101,7 +101,16 @@ impl Layer {
 
 /// The chosen layer; by default that of the only plain R, G, B or Y, or the only one of the file.
 fn choose(parts: &[Header], name: Option<&str>) -> Result<Layer, PictureError> {
-    let all: Vec<Layer> = parts.iter().enumerate().flat_map(|(i, part)| layers(i, part)).collect();
+    let of_parts = |is_counted: fn(&Channel) -> bool| -> Vec<Layer> {
+        let each = parts.iter().enumerate();
+        each.flat_map(|(i, part)| layers(i, part, is_counted)).collect()
+    };
+    let all = of_parts(|channel| channel.sample != Sample::Uint);
+    // What would be a layer if integers were colors.
+    let refused = |is_wanted: &dyn Fn(&Layer) -> bool| {
+        let mut possible = of_parts(|_| true).into_iter().filter(|layer| !all.contains(layer));
+        possible.find(is_wanted).map(|layer| of_integers(&layer, &parts[layer.part]))
+    };
     let only = |wanted: &dyn Fn(&Layer) -> bool| {
         let mut fitting = all.iter().filter(|layer| wanted(layer));
         fitting.next().filter(|_| fitting.next().is_none()).cloned()
@@ -113,20 +122,22 @@ fn choose(parts: &[Header], name: Option<&str>) -> Result<Layer, PictureError> {
             [] => EXPECTED.into(),
             _ => format!("one of the layers {}", labels(&all)),
         };
-        return chosen.ok_or_else(|| PictureError::Channels {
-            found: format!("without one color layer {:?}", shown(name)),
-            expected: expected(),
+        return chosen.ok_or_else(|| {
+            refused(&|layer| layer.is_named(name)).unwrap_or_else(|| PictureError::Channels {
+                found: format!("without one color layer {:?}", shown(name)),
+                expected: expected(),
+            })
         });
     }
     let chosen = only(&|layer| layer.prefix.is_empty()).or_else(|| only(&|_| true));
     chosen.ok_or_else(|| match &all[..] {
-        [] => {
+        [] => refused(&|_| true).unwrap_or_else(|| {
             let channels = parts.iter().flat_map(|part| &part.channels);
             let names = listed(channels.map(|c| c.name.as_str()));
             let is_luma = parts.iter().any(|p| p.channels.iter().any(|c| is_chroma(&c.name)));
             let kind = if is_luma { ": luminance and chroma" } else { "" };
             PictureError::Channels { found: names + kind, expected: EXPECTED.into() }
-        }
+        }),
         _ => PictureError::Layers { found: labels(&all) },
     })
 }
@@ -143,10 +154,23 @@ fn labels(all: &[Layer]) -> String {
     listed(all.iter().map(name))
 }
 
-fn layers(part: usize, header: &Header) -> Vec<Layer> {
-    let is_number = |c: &&Channel| c.sample != Sample::Uint;
-    let names: BTreeSet<&str> =
-        header.channels.iter().filter(is_number).map(|c| c.name.as_str()).collect();
+/// The error of a layer some of whose colors are integers.
+fn of_integers(layer: &Layer, header: &Header) -> PictureError {
+    let is_color = |c: &&Channel| {
+        c.name.strip_prefix(&layer.prefix).is_some_and(|name| ["R", "G", "B", "Y"].contains(&name))
+    };
+    let integers = header.channels.iter().filter(is_color).filter(|c| c.sample == Sample::Uint);
+    let found = format!("{} of 32-bit integers", listed(integers.map(|c| c.name.as_str())));
+    PictureError::Channels {
+        found,
+        expected: "half or float: save the picture as one of these".into(),
+    }
+}
+
+/// The layers of a part among the channels that are counted.
+fn layers(part: usize, header: &Header, is_counted: fn(&Channel) -> bool) -> Vec<Layer> {
+    let counted = header.channels.iter().filter(|channel| is_counted(channel));
+    let names: BTreeSet<&str> = counted.map(|c| c.name.as_str()).collect();
     let has = |prefix: &str, name: &str| names.contains(format!("{prefix}{name}").as_str());
     let with = |prefix: &str| Layer { part, part_name: header.name.clone(), prefix: prefix.into() };
     let is_colored = |p: &&str| is_prefix(p) && ["R", "G", "B"].iter().all(|n| has(p, n));
@@ -184,14 +208,16 @@ fn stated_color(reader: &ExrReader) -> StatedColor {
             _ => StatedColor::unread(format!("colorInteropID {:?}", shown(id))),
         };
     }
-    let stated = attributes.get("chromaticities");
-    let stated = stated.and_then(|value| value.as_singles("chromaticities"));
-    let space = stated.and_then(|found| {
-        let [rx, ry, gx, gy, bx, by, wx, wy] = found.map(f64::from);
-        chromaticities::space([[rx, ry], [gx, gy], [bx, by]], [wx, wy])
-    });
-    StatedColor {
-        space: space.map_or(Stated::No, |space| Stated::yes(space, "chromaticities")),
-        encoding: Stated::yes(Encoding::Linear, "OpenEXR"),
-    }
+    const BY: &str = "chromaticities";
+    let space = match attributes.get(BY) {
+        None => Stated::No,
+        Some(value) => match value.as_singles(BY) {
+            Some(found) => {
+                let [rx, ry, gx, gy, bx, by, wx, wy] = found.map(f64::from);
+                chromaticities::stated(BY, [[rx, ry], [gx, gy], [bx, by]], [wx, wy])
+            }
+            None => Stated::Unread(format!("{BY} of the type {}", shown(&value.kind))),
+        },
+    };
+    StatedColor { space, encoding: Stated::yes(Encoding::Linear, "OpenEXR") }
 }

@@ -6,13 +6,13 @@
 
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 use std::path::Path;
 
 use upglow::open_input;
 use upglow_color::rounding::to_single;
 
-use super::chromaticities::space;
+use super::chromaticities::stated;
 use super::encoding::Encoding;
 use super::error::PictureError;
 use super::source::{Facts, LastSample, Pixels, Source, check_size};
@@ -35,6 +35,8 @@ struct Lines {
     space: Stated<upglow_color::RgbSpace>,
 }
 
+/// What EXPOSURE and COLORCORR may come to: far beyond any light, and colors are not lost to it.
+const EXPOSURES: RangeInclusive<f64> = 1e-30..=1e30;
 /// Most bytes of a line; comments hold the commands that made a picture.
 const MAX_LINE: u64 = 64 << 10;
 /// Most lines before the pixels.
@@ -160,13 +162,22 @@ impl Lines {
         for _ in 0..MAX_LINES {
             let line = line(file)?;
             if line.is_empty() {
-                return Ok(found);
+                return found.checked();
             }
             if let Some((key, value)) = line.split_once('=') {
                 found.add(key, value.trim())?;
             }
         }
         Err(damaged("no empty line before its pixels"))
+    }
+
+    fn checked(self) -> Result<Self, PictureError> {
+        let wrong = self.exposure.iter().find(|v| !EXPOSURES.contains(v));
+        wrong.map_or(Ok(()), |v| {
+            let found = format!("EXPOSURE and COLORCORR that multiply to {v:e}");
+            Err(PictureError::pixels(found, "1e-30 to 1e30"))
+        })?;
+        Ok(self)
     }
 
     fn add(&mut self, key: &str, value: &str) -> Result<(), PictureError> {
@@ -191,8 +202,7 @@ impl Lines {
             }
             "PRIMARIES" => {
                 let [rx, ry, gx, gy, bx, by, wx, wy] = numbers(value).ok_or_else(wrong)?;
-                let found = space([[rx, ry], [gx, gy], [bx, by]], [wx, wy]).ok_or_else(wrong)?;
-                self.space = Stated::yes(found, "PRIMARIES");
+                self.space = stated("PRIMARIES", [[rx, ry], [gx, gy], [bx, by]], [wx, wy]);
             }
             _ => {}
         }

@@ -154,9 +154,12 @@ fn curve(tags: &Tags<'_>, names: &[&[u8; 4]]) -> Result<Encoding, String> {
     }
     match first {
         &Curve::Parametric(ParametricCurve { numbers: [gamma, 1.0, 0.0, _, 0.0, 0.0, _] }) => {
-            Ok(Encoding::Gamma(gamma))
+            Encoding::of_gamma(gamma).ok_or_else(|| odd_gamma(gamma))
         }
-        Curve::Parametric(curve) => Ok(Encoding::Parametric(*curve)),
+        Curve::Parametric(curve) => match Encoding::of_gamma(curve.numbers[0]) {
+            Some(_) => Ok(Encoding::Parametric(*curve)),
+            None => Err(odd_gamma(curve.numbers[0])),
+        },
         Curve::Table(table) => {
             let middle = table.at(0.5);
             let gamma = Encoding::Gamma(middle.ln() / 0.5_f64.ln());
@@ -166,6 +169,10 @@ fn curve(tags: &Tags<'_>, names: &[&[u8; 4]]) -> Result<Encoding, String> {
             Err(format!("an ICC profile with a curve of {} numbers", table.0.len()))
         }
     }
+}
+
+fn odd_gamma(gamma: f64) -> String {
+    format!("an ICC profile with a gamma of {gamma}, outside {}", Encoding::GAMMAS)
 }
 
 enum Curve {

@@ -15,7 +15,7 @@ use upglow::open_input;
 use upglow_color::RgbSpace;
 
 use self::chunks::Chunks;
-use super::chromaticities::space;
+use super::chromaticities::stated;
 use super::encoding::Encoding;
 use super::error::PictureError;
 use super::exif::Exif;
@@ -23,7 +23,7 @@ use super::source::{
     Alpha, Facts, LastSample, Pixels, Source, add_bytes, add_words, check_memory, check_size,
     pixels,
 };
-use super::stated::{Stated, StatedColor};
+use super::stated::{Stated, StatedColor, StatementError};
 use super::{code_points, icc};
 
 pub(super) struct PngPicture {
@@ -233,21 +233,21 @@ fn stated_color(info: &Info<'_>) -> Result<StatedColor, PictureError> {
     let pair = |(x, y): (png::ScaledFloat, png::ScaledFloat)| {
         [x, y].map(|v| f64::from(v.into_scaled()) / f64::from(png::ScaledFloat::SCALING))
     };
-    let stated = info
-        .chrm_chunk
-        .and_then(|c| space([pair(c.red), pair(c.green), pair(c.blue)], pair(c.white)));
-    let gamma = info.gama_chunk.and_then(|g| of_gamma(f64::from(g.into_scaled())));
     Ok(StatedColor {
-        space: stated.map_or(Stated::No, |space| Stated::yes(space, "cHRM")),
-        encoding: gamma.map_or(Stated::No, |encoding| Stated::yes(encoding, "gAMA")),
+        space: info.chrm_chunk.map_or(Stated::No, |c| {
+            stated("cHRM", [pair(c.red), pair(c.green), pair(c.blue)], pair(c.white))
+        }),
+        encoding: info.gama_chunk.map_or(Stated::No, |g| of_gamma(f64::from(g.into_scaled()))),
     })
 }
 
 /// The encoding of a gAMA chunk, which states 100000/γ.
-fn of_gamma(stated: f64) -> Option<Encoding> {
-    let gamma = f64::from(png::ScaledFloat::SCALING) / stated;
-    match gamma {
-        1.0 => Some(Encoding::Linear),
-        _ => Some(Encoding::Gamma(gamma)).filter(|_| gamma.is_finite()),
+fn of_gamma(stated: f64) -> Stated<Encoding> {
+    const BY: &str = "gAMA";
+    let found = f64::from(png::ScaledFloat::SCALING) / stated;
+    match Encoding::of_gamma(found) {
+        Some(Encoding::Gamma(1.0)) => Stated::yes(Encoding::Linear, BY),
+        Some(encoding) => Stated::yes(encoding, BY),
+        None => Stated::invalid(StatementError::Gamma { by: BY, found }),
     }
 }

@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-use upglow_color::{RgbSpace, choices};
+use upglow_color::rounding::to_single;
+use upglow_color::{RgbSpace, RgbSpaceError, choices};
 
 use super::encoding::Encoding;
 use super::error::PictureError;
@@ -17,6 +18,45 @@ pub(super) enum Stated<T> {
     Yes { value: T, by: &'static str },
     /// Something that is not read: it must not be guessed.
     Unread(String),
+    /// Something that is not valid.
+    Invalid(Box<StatementError>),
+}
+
+/// Why what a file states is not valid.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum StatementError {
+    /// Chromaticities of no RGB space.
+    #[error("{by} {}", numbers(.found))]
+    Chromaticities {
+        /// The part of the file that states them.
+        by: &'static str,
+        /// Those of red, green, blue and white.
+        found: [[f64; 2]; 4],
+        /// What is wrong with them.
+        source: RgbSpaceError,
+    },
+    /// A gamma that no picture has.
+    #[error("{by} states a gamma of {found}, expected {}", Encoding::GAMMAS)]
+    Gamma {
+        /// The part of the file that states it.
+        by: &'static str,
+        /// The gamma.
+        found: f64,
+    },
+}
+
+impl StatementError {
+    fn by(&self) -> &'static str {
+        let (Self::Chromaticities { by, .. } | Self::Gamma { by, .. }) = self;
+        by
+    }
+}
+
+/// Chromaticities as `--space` has them, in the digits of single precision.
+fn numbers(found: &[[f64; 2]; 4]) -> String {
+    let each = found.as_flattened().iter().map(|&v| format!("{:?}", to_single(v)));
+    each.collect::<Vec<_>>().join(",")
 }
 
 /// What a file states of its colors.
@@ -29,6 +69,10 @@ pub(super) struct StatedColor {
 impl<T> Stated<T> {
     pub(super) fn yes(value: T, by: &'static str) -> Self {
         Self::Yes { value, by }
+    }
+
+    pub(super) fn invalid(error: StatementError) -> Self {
+        Self::Invalid(Box::new(error))
     }
 
     /// This statement, or the other if there is none.
@@ -154,7 +198,8 @@ pub(super) fn alpha(
 ///
 /// # Errors
 ///
-/// [`PictureError::Unstated`] if neither the file nor the caller states both.
+/// [`PictureError::Unstated`] if neither the file nor the caller states both, [`PictureError::Statement`] if
+/// what the file states is not valid and nothing else is declared.
 pub(super) fn choose(
     stated: &StatedColor,
     declared: &Declared,
@@ -180,7 +225,14 @@ pub(super) fn choose(
                 (true, false) => Missing::Space,
                 _ => Missing::Encoding,
             };
-            let found = space.err().flatten().or(encoding.err().flatten());
+            let mut found = None;
+            for unknown in [space.err(), encoding.err()].into_iter().flatten() {
+                match unknown {
+                    Unknown::Unstated => {}
+                    Unknown::Unread(text) => found = found.or(Some(text)),
+                    Unknown::Invalid(error) => return Err(error.into()),
+                }
+            }
             Err(PictureError::Unstated { missing, found: Found(found) })
         }
     }
@@ -220,12 +272,19 @@ impl fmt::Display for Found {
     }
 }
 
-/// The declared value, or the stated one; without either, what is stated but not read.
+/// Why neither file nor caller state a property.
+enum Unknown {
+    Unstated,
+    Unread(String),
+    Invalid(Box<StatementError>),
+}
+
+/// The declared value, or the stated one.
 fn word<T: Clone + PartialEq>(
     stated: &Stated<T>,
     declared: Option<&T>,
     name: impl Fn(&T) -> String,
-) -> Result<(T, Word), Option<String>> {
+) -> Result<(T, Word), Unknown> {
     match (declared, stated) {
         (Some(declared), stated) => {
             let overruled = match stated {
@@ -233,6 +292,7 @@ fn word<T: Clone + PartialEq>(
                     Some(format!("{} ({by})", name(value)))
                 }
                 Stated::Unread(found) => Some(found.clone()),
+                Stated::Invalid(error) => Some(format!("invalid {}", error.by())),
                 _ => None,
             };
             let word = Word { used: name(declared), by: "declared".into(), overruled };
@@ -242,7 +302,8 @@ fn word<T: Clone + PartialEq>(
             let word = Word { used: name(value), by: (*by).into(), overruled: None };
             Ok((value.clone(), word))
         }
-        (None, Stated::No) => Err(None),
-        (None, Stated::Unread(found)) => Err(Some(found.clone())),
+        (None, Stated::No) => Err(Unknown::Unstated),
+        (None, Stated::Unread(found)) => Err(Unknown::Unread(found.clone())),
+        (None, Stated::Invalid(error)) => Err(Unknown::Invalid(error.clone())),
     }
 }

@@ -15,7 +15,7 @@ use self::packed::{Method, Packed};
 use self::samples::{Number, Predictor, Storage};
 use upglow::open_input;
 
-use super::chromaticities::space;
+use super::chromaticities::stated;
 use super::encoding::Encoding;
 use super::error::PictureError;
 use super::icc;
@@ -426,13 +426,18 @@ fn stated_color(fields: &mut Fields, number: Number) -> Result<StatedColor, Pict
         let StatedColor { space, encoding } = icc::stated(&profile)?;
         return Ok(StatedColor { space, encoding: encoding.or(by_type) });
     }
-    let stated = match (fields.fractions(tag::WHITE_POINT)?, fields.fractions(tag::PRIMARIES)?) {
+    let space = match (fields.fractions(tag::WHITE_POINT)?, fields.fractions(tag::PRIMARIES)?) {
         (Some(white), Some(primaries)) => match (&white[..], &primaries[..]) {
-            (&[x, y], &[rx, ry, gx, gy, bx, by]) => space([[rx, ry], [gx, gy], [bx, by]], [x, y]),
-            _ => None,
+            (&[x, y], &[rx, ry, gx, gy, bx, by]) => {
+                stated("primaries and white", [[rx, ry], [gx, gy], [bx, by]], [x, y])
+            }
+            (white, primaries) => {
+                let counts = [primaries.len(), white.len()];
+                let [primaries, white] = counts;
+                Stated::Unread(format!("primaries of {primaries} and a white of {white} numbers"))
+            }
         },
-        _ => None,
+        _ => Stated::No,
     };
-    let space = stated.map_or(Stated::No, |space| Stated::yes(space, "primaries and white"));
     Ok(StatedColor { space, encoding: by_type })
 }

@@ -148,7 +148,14 @@ fn exposure_is_undone_and_primaries_are_followed() {
     of("PRIMARIES=0.708 0.292 0.17 0.797 0.131 0.046 0.3127 0.329\n").unwrap();
     let picture = Picture::open(&path).unwrap();
     assert_eq!(picture.space().map(|space| space.name()), Some("rec2020"));
-    for lines in ["EXPOSURE=0\n", "EXPOSURE=x\n", "COLORCORR=1 1\n", "PRIMARIES=0 0\n"] {
+    for lines in [
+        "EXPOSURE=0\n",
+        "EXPOSURE=1e999\n",
+        "EXPOSURE=1e-999\n",
+        "EXPOSURE=x\n",
+        "COLORCORR=1 1\n",
+        "PRIMARIES=0 0\n",
+    ] {
         let message = of(lines).unwrap_err();
         let key = lines.split('=').next().unwrap();
         assert!(message.starts_with(&format!("damaged: {key}=")), "{message}");
@@ -189,5 +196,37 @@ fn damaged_and_other_pictures_are_refused() {
     ] {
         let message = read(&path, &[&head, row].concat()).unwrap_err();
         assert!(message.starts_with("damaged: a r"), "{message}");
+    }
+}
+
+#[test]
+fn exposures_whose_product_is_no_exposure_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("x.hdr");
+    let plain = read(&path, &file(FORMAT, "-Y 6 +X 11", SIZE, Coding::Plain)).unwrap();
+    let powers = [-300, -200, -100, -31, -29, 0, 29, 31, 100, 200, 300];
+    let pairs = powers.iter().flat_map(|first| powers.map(|second| (*first, second)));
+    for (first, second) in pairs {
+        for (line, count) in [("EXPOSURE=1e", 1), ("EXPOSURE=1e", 3), ("COLORCORR=1 1 1e", 2)] {
+            let more = format!("{line}{second}\n").repeat(count);
+            let lines = format!("{FORMAT}EXPOSURE=1e{first}\n{more}");
+            let found = read(&path, &file(&lines, "-Y 6 +X 11", SIZE, Coding::Plain));
+            let blue = first + second * i32::try_from(count).unwrap();
+            let red = if line.starts_with("COLORCORR") { first } else { blue };
+            let is_good = [red, blue].iter().all(|power| power.abs() < 30);
+            match found {
+                Ok(rgb) => {
+                    assert!(is_good, "{lines}");
+                    for (found, plain) in rgb.as_flattened().iter().zip(plain.as_flattened()) {
+                        assert!(found.is_finite() && (*found == 0.0) == (*plain == 0.0), "{lines}");
+                    }
+                }
+                Err(message) => {
+                    let expected = "EXPOSURE and COLORCORR that multiply to ";
+                    assert!(!is_good && message.starts_with(expected), "{lines} {message}");
+                    assert!(message.ends_with(", expected 1e-30 to 1e30"), "{message}");
+                }
+            }
+        }
     }
 }

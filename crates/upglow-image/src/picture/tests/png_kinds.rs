@@ -283,7 +283,8 @@ fn an_index_beyond_the_palette_is_refused_and_those_within_have_their_alpha() {
                 }
                 let (rgb, alphas) = found.unwrap();
                 for (i, &index) in indices.iter().enumerate() {
-                    let opacity = alpha.get(index as usize).copied().unwrap_or(255);
+                    let opacity =
+                        alpha.get(usize::try_from(index).unwrap()).copied().unwrap_or(255);
                     assert_eq!(rgb[i], palette(index).map(|v| f32::from(v) / 255.0));
                     assert_eq!(alphas[i], f32::from(opacity) / 255.0);
                 }

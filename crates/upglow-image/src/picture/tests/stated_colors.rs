@@ -4,6 +4,8 @@ use std::fs::File;
 use std::io::Write as _;
 use std::path::Path;
 
+use tiff::encoder::{Rational, TiffEncoder, colortype};
+use tiff::tags::Tag;
 use upglow_color::RgbSpace;
 
 use super::super::Picture;
@@ -12,7 +14,7 @@ use super::super::linear::LinearPicture;
 use super::super::stated::Declared;
 use super::tiff_file::TiffFile;
 use crate::exr::attribute::{Attribute, Attributes, chromaticities};
-use crate::exr::header::Sample;
+use crate::exr::header::{Arrangement, Channel, Sample, Window, print};
 use crate::exr::writer::{ExrDescription, ExrWriter};
 
 fn rgb_space(name: &str) -> RgbSpace {
@@ -360,5 +362,176 @@ fn colors_are_divided_by_alpha_before_they_are_decoded_and_kept_where_it_is_zero
         let (rgb, alpha) = first_band(word).unwrap();
         near(rgb[0][0], decoded(128.0 / 255.0));
         assert_eq!(alpha.is_some(), word == "straight");
+    }
+}
+
+/// Chromaticities of no RGB space, and why they are none.
+fn no_spaces() -> Vec<([f32; 8], &'static str)> {
+    let good = [0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329];
+    let mut found = vec![
+        ([0.3; 8], "the three primaries lie on one line, expected a triangle"),
+        ([0.0; 8], "expected numbers from -10 to 10, and a y of at least 0.001"),
+        ([0.1, 0.1, 0.2, 0.2, 0.3, 0.3, 0.3, 0.3], "the three primaries lie on one line"),
+        ([0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.7, 0.7], "outside the triangle of the primaries"),
+    ];
+    for place in 0..8 {
+        for value in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, 10.5] {
+            let mut wrong = good;
+            wrong[place] = value;
+            found.push((wrong, "expected numbers from -10 to 10"));
+        }
+    }
+    found
+}
+
+/// What is told of a file, and that a declared space is used instead.
+fn told(path: &Path, by: &str) -> String {
+    let declared = Declared { space: Some(rgb_space("srgb")), ..Declared::default() };
+    let both = Declared { encoding: Some(Encoding::Linear), ..declared.clone() };
+    let chosen = Picture::open(path).unwrap().chosen(&both).unwrap();
+    let line = format!("srgb (declared; the file states invalid {by})");
+    assert_eq!(chosen.interpretation.space.to_string(), line);
+    let error = Picture::open(path).unwrap().chosen(&Declared::default()).unwrap_err();
+    let cause = std::error::Error::source(&error).map(ToString::to_string);
+    format!("{error}: {}", cause.unwrap_or_default())
+}
+
+#[test]
+fn chromaticities_of_no_space_are_told_as_such_in_every_format() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |suffix: &str| folder.path().join(format!("x.{suffix}"));
+    for (found, why) in no_spaces() {
+        let text = found.map(|v| format!("{v:?}")).join(",");
+        let attribute = Attribute::singles("chromaticities", &found);
+        write_exr(&path("exr"), &RGB, [("chromaticities".into(), attribute)].into());
+        let message = told(&path("exr"), "chromaticities");
+        assert!(message.starts_with(&format!("chromaticities {text}: ")), "{message}");
+        assert!(message.contains(why) && message.len() < 300, "{message}");
+
+        let lines = format!("PRIMARIES={}\n", found.map(|v| v.to_string()).join(" "));
+        let file =
+            format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n{lines}\n-Y 1 +X 1\n\u{1}\u{1}\u{1}\u{1}");
+        std::fs::write(path("hdr"), file).unwrap();
+        let message = told(&path("hdr"), "PRIMARIES");
+        assert!(message.starts_with(&format!("PRIMARIES {text}: ")), "{message}");
+        assert!(message.contains(why), "{message}");
+
+        // PNG and TIFF have no negative numbers, and PNG only finite ones.
+        let is_positive = found.iter().all(|v| *v >= 0.0 && *v < 40_000.0);
+        let scaled = found.map(|v| format!("{}", (f64::from(v) * 1e5).round()).parse::<u32>());
+        if let (true, [rx, ry, gx, gy, bx, by, wx, wy]) = (is_positive, scaled) {
+            let order = [wx, wy, rx, ry, gx, gy, bx, by].map(|v| v.unwrap().to_be_bytes());
+            write_png(&path("png"), &[(b"cHRM", order.as_flattened().to_vec())]);
+            let message = told(&path("png"), "cHRM");
+            assert!(message.starts_with("cHRM ") && message.contains(why), "{message}");
+        }
+        let ratio = |v: f32| match v {
+            v if v.is_nan() => (0, 0),
+            v if v.is_infinite() || v > 40_000.0 => (1, 0),
+            v => (format!("{}", (f64::from(v) * 1e4).round()).parse::<u32>().unwrap(), 10_000),
+        };
+        if !found.iter().any(|v| *v < 0.0) {
+            let mut encoder = TiffEncoder::new(File::create(path("tif")).unwrap()).unwrap();
+            let mut image = encoder.new_image::<colortype::RGB8>(1, 1).unwrap();
+            let ratios: Vec<Rational> =
+                found.iter().map(|v| ratio(*v)).map(|(n, d)| Rational { n, d }).collect();
+            image.encoder().write_tag(Tag::Unknown(319), &ratios[..6]).unwrap();
+            image.encoder().write_tag(Tag::Unknown(318), &ratios[6..]).unwrap();
+            image.write_data(&[1, 2, 3]).unwrap();
+            let message = told(&path("tif"), "primaries and white");
+            assert!(
+                message.starts_with("primaries and white ") && message.contains(why),
+                "{message}"
+            );
+        }
+    }
+    let text = [("chromaticities".into(), Attribute::from("0.3"))];
+    write_exr(&path("exr"), &RGB, text.into());
+    let message = undeclared(&path("exr")).unwrap_err();
+    assert!(message.starts_with("chromaticities of the type string, which"), "{message}");
+}
+
+#[test]
+fn gammas_of_no_picture_are_told_as_such() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("x.png");
+    let declared = Declared { encoding: Some(Encoding::Srgb), ..Declared::default() };
+    for value in
+        (0..32).flat_map(|bit| [1_u32 << bit, (1 << bit) + 45_455]).chain([10_000, 1_000_000])
+    {
+        write_png(&path, &[(b"cHRM", chrm()), (b"gAMA", gamma(value))]);
+        let number = 1e5 / f64::from(value);
+        let found = undeclared(&path);
+        if (0.1..=10.0).contains(&number) {
+            assert_eq!(found, texts(["srgb", "cHRM", &number.to_string(), "gAMA"]));
+        } else {
+            let line = format!("gAMA states a gamma of {number}, expected 0.1 to 10");
+            assert_eq!(found, Err(line));
+            let chosen = Picture::open(&path).unwrap().chosen(&declared).unwrap();
+            let used = chosen.interpretation.encoding.to_string();
+            assert_eq!(used, "srgb (declared; the file states invalid gAMA)");
+        }
+    }
+    let path = folder.path().join("x.tif");
+    for power_256 in [1, 25, 26, 512, 2560, 2561, 0xffff] {
+        let profile = icc_profile(&rgb_space("srgb"), &power(power_256), &[]);
+        let file = TiffFile { further: vec![(34675, profile)], ..TiffFile::default() };
+        std::fs::write(&path, file.bytes()).unwrap();
+        let number = f64::from(power_256) / 256.0;
+        match undeclared(&path) {
+            Ok(found) => assert!((0.1..=10.0).contains(&number), "{found:?}"),
+            Err(message) => {
+                let line =
+                    format!("an ICC profile with a gamma of {number}, outside 0.1 to 10, which");
+                assert!(message.starts_with(&line), "{message}");
+            }
+        }
+    }
+}
+
+/// The chromaticities of sRGB.
+fn chrm() -> Vec<u8> {
+    [31_270_u32, 32_900, 64_000, 33_000, 30_000, 60_000, 15_000, 6_000]
+        .map(u32::to_be_bytes)
+        .concat()
+}
+
+#[test]
+fn colors_that_are_integers_are_told_as_such() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("x.exr");
+    let of = |prefix: &str, names: &[&str], integers: usize, layer: Option<&str>| {
+        let channel = |(i, name): (usize, &&str)| Channel {
+            name: format!("{prefix}{name}"),
+            sample: if integers >> i & 1 == 1 { Sample::Uint } else { Sample::Half },
+            is_linear: false,
+        };
+        let channels: Vec<Channel> = names.iter().enumerate().map(channel).collect();
+        let windows = [Window::of_size([1, 1]); 2];
+        let rows = Arrangement::Rows;
+        let method = exr::compression::Compression::Uncompressed;
+        std::fs::write(&path, print(&channels, method, windows, rows, &Attributes::new())).unwrap();
+        let declared = Declared { layer: layer.map(Into::into), ..Declared::default() };
+        Picture::open_as(&path, &declared).unwrap_err().to_string()
+    };
+    for (prefix, layer) in [("", None), ("wall.", None), ("wall.", Some("wall"))] {
+        for names in [&["B", "G", "R"][..], &["Y"], &["A", "B", "G", "R"], &["A", "Y"]] {
+            for integers in 1..1 << names.len() {
+                let of_colors = names
+                    .iter()
+                    .enumerate()
+                    .filter(|(i, name)| integers >> i & 1 == 1 && **name != "A");
+                let listed: Vec<String> =
+                    of_colors.map(|(_, name)| format!("{prefix}{name}")).collect();
+                let message = of(prefix, names, integers, layer);
+                if !listed.is_empty() {
+                    let listed = listed.join(", ");
+                    let line = format!(
+                        "channels {listed} of 32-bit integers, expected half or float: save the picture as one of these"
+                    );
+                    assert_eq!(message, line);
+                }
+            }
+        }
     }
 }
