@@ -41,7 +41,7 @@ fn metadata(root: &Path) -> Result<Value, StepError> {
 }
 
 /// What the names of files with terms begin with.
-const TERMS: [&str; 6] = ["LICENSE", "LICENCE", "COPYING", "COPYRIGHT", "NOTICE", "UNLICENSE"];
+const TERMS: [&str; 6] = ["LICENSE", "LICENC", "COPYING", "COPYRIGHT", "NOTICE", "UNLICENSE"];
 
 /// Writes the terms of all packages of others that are shipped, each text once; how many packages there are.
 pub(crate) fn write_notices(root: &Path, file: &Path) -> Result<usize, StepError> {

@@ -113,6 +113,16 @@ fn a_known_color_under_a_light_of_unknown_ultraviolet_is_told_once() {
 }
 
 #[test]
+fn the_brightest_colors_of_the_help_are_searched() {
+    let folder = folder_with_cube();
+    folder.write("bright.csv", "r,g,b\n10,10,10\n");
+    for line in ["color cube 10 10 10 --kind any", "relight cube --colors bright.csv --kind any"] {
+        let run = folder.run(line);
+        assert_eq!(run.status, 0, "{line}: {}", run.stderr);
+    }
+}
+
+#[test]
 fn faults_are_named_in_one_line() {
     let folder = folder_with_cube();
     let color = "color cube 0.5 0.4 0.3";

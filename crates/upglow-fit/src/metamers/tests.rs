@@ -159,7 +159,7 @@ fn the_wrong_number_of_colors_and_what_is_no_color_are_refused() {
     let gray = xyz(COLORS[0]);
     assert_eq!(refused(&[gray]), "1 colors, expected 2, one for each light");
     let wrong = refused(&[gray, Xyz([f64::NAN; 3])]);
-    assert_eq!(wrong, "the color under A is [NaN, NaN, NaN] (XYZ), expected numbers up to 10");
+    assert_eq!(wrong, "the color under A is [NaN, NaN, NaN] (XYZ), expected numbers up to 1000");
 }
 
 #[test]
