@@ -57,6 +57,9 @@ fn faults_are_named_in_one_line() {
     folder.write("plain.csv", "wavelength_nm,power\n300,1\n");
     folder.write("empty.bfc", "");
     folder.write("text.exr", "no picture");
+    let names = ["outgoing_nm\\incident_nm", "incident_nm\\outgoing_nm"];
+    assert!(sample().starts_with(names[0]));
+    folder.write("exchanged.csv", sample().replace(names[0], names[1]));
     let cases = [
         ("sample.txt", "sample.txt: a file .txt, expected a measured matrix, .bfc, .csv or .exr"),
         (
@@ -70,6 +73,7 @@ fn faults_are_named_in_one_line() {
         ),
         ("empty.bfc", "empty.bfc: line 2 is missing, expected BFC-450 Matrix File"),
         ("text.exr", "text.exr: "),
+        ("exchanged.csv", "exchanged.csv: light that arrives at "),
         (
             "sample.csv --plot sample.csv",
             "sample.csv: a name that ends in .csv, expected one that ends in .svg",

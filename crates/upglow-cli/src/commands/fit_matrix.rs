@@ -1,12 +1,15 @@
 //! `upglow fit-matrix`: the material of a measured re-radiation matrix.
 
+use std::path::Path;
+
 use serde::Serialize;
-use upglow::{DyeModel, Fluorescence};
+use upglow::{DyeModel, DyeSetError, Fluorescence};
 use upglow_color::{
     BispectralUnit, Choice as _, Contract, DonaldsonMatrix, Illuminant, MatrixSums, MeasuredDye,
 };
 use upglow_fit::{
-    MatrixDifference, MatrixDyes, MatrixFit, MatrixFitError, MatrixFitOptions, fit_matrix,
+    MatrixDifference, MatrixDyes, MatrixFit, MatrixFitError, MatrixFitOptions, OwnMaterialError,
+    fit_matrix,
 };
 use upglow_image::{FormError, SpectralPicture};
 use upglow_terminal::{Console, Failure, Report};
@@ -49,14 +52,7 @@ pub(crate) fn run(args: &FitMatrixArgs, console: &Console) -> Result<(), Failure
     let options = MatrixFitOptions { dyes, count: args.count, reflectance: args.reflectance };
     let lights = lights(args)?;
     let measured = read(args)?;
-    let fit = fit_matrix(&measured, &options).map_err(|error| match error {
-        error @ MatrixFitError::Reflectance { .. } => Failure::option("--reflectance", error),
-        error @ MatrixFitError::Material(_) if args.dyes == "measured" => {
-            Failure::file(&args.file, error).with("; are the axes of the matrix exchanged?")
-        }
-        error @ MatrixFitError::Material(_) => Failure::option("--dyes", error),
-        error => Failure::file(&args.file, error),
-    })?;
+    let fit = fit_matrix(&measured, &options).map_err(|error| refused(error, &args.file))?;
     let differences: Vec<MatrixDifference> = lights
         .iter()
         .map(|light| fit.difference(&measured, light))
@@ -80,6 +76,24 @@ pub(crate) fn run(args: &FitMatrixArgs, console: &Console) -> Result<(), Failure
         files::write(path, draw(&figure).as_bytes())?;
     }
     console.print(&report)
+}
+
+/// Names the option or the file that prevents a fit.
+fn refused(error: MatrixFitError, file: &Path) -> Failure {
+    if let MatrixFitError::Material(OwnMaterialError::Dyes(cause)) = &error
+        && let DyeSetError::AntiStokes { absorption_nm, emission_nm, .. } = **cause
+    {
+        let message = format!(
+            "light that arrives at {absorption_nm:.0} nm leaves at {emission_nm:.0} nm, in the mean, expected \
+             longer wavelengths to leave; are the axes exchanged?"
+        );
+        return Failure::file(file, message);
+    }
+    match error {
+        error @ MatrixFitError::Reflectance { .. } => Failure::option("--reflectance", error),
+        error @ MatrixFitError::Material(_) => Failure::option("--dyes", error),
+        error => Failure::file(file, error),
+    }
 }
 
 /// Reads the matrix in the form that the name of its file tells.
