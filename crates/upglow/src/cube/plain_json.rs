@@ -7,7 +7,7 @@ use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor}
 use upglow_color::NameError;
 
 /// Any JSON in which no object has two fields of one name: of two, readers in different languages take
-/// different ones. With `ONE_LINE`, every text is one line too.
+/// different ones. With `ONE_LINE`, every text and every name of a field is one line too.
 pub(crate) struct PlainJson<const ONE_LINE: bool>;
 
 impl<'de, const ONE_LINE: bool> Deserialize<'de> for PlainJson<ONE_LINE> {
@@ -58,6 +58,9 @@ impl<'de, const ONE_LINE: bool> Visitor<'de> for PlainJson<ONE_LINE> {
     fn visit_map<A: MapAccess<'de>>(self, mut fields: A) -> Result<Self, A::Error> {
         let mut names = HashSet::new();
         while let Some(name) = fields.next_key::<String>()? {
+            if ONE_LINE {
+                NameError::check_text(&name).map_err(A::Error::custom)?;
+            }
             fields.next_value::<Self>()?;
             if let Some(name) = names.replace(name) {
                 return Err(A::Error::custom(format_args!("two fields {name:?}, expected one")));
@@ -80,7 +83,13 @@ mod tests {
         }
         let twins = message(r#"{"a":[{"b":1,"b":1}]}"#).unwrap();
         assert!(twins.starts_with("two fields \"b\", expected one"), "{twins}");
-        for lines in [r#"["a\nb"]"#, r#"{"a":"\u2028b"}"#, r#""\u0007""#] {
+        for lines in [
+            r#"["a\nb"]"#,
+            r#"{"a":"\u2028b"}"#,
+            r#""\u0007""#,
+            r#"{"a\nb":1}"#,
+            r#"[{"\u001b":1}]"#,
+        ] {
             assert!(message(lines).unwrap().contains("holds a control character"), "{lines}");
             assert!(serde_json::from_str::<PlainJson<false>>(lines).is_ok(), "{lines}");
         }
