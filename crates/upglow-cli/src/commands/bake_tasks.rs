@@ -34,18 +34,18 @@ pub(super) fn run(args: &BakeArgs, tasks: &TaskNumbers, console: &Console) -> Re
         let task = plan.task(number)?;
         let picture = Path::new(&task.picture);
         let outputs: Vec<PathBuf> = task.files.iter().map(PathBuf::from).collect();
-        let is_made = |i| is_made(&plan, &task, i);
+        let made: Vec<bool> = (0..outputs.len()).map(|i| is_made(&plan, &task, i)).collect();
         let check = || {
             check_hash(picture, &task.sha256)?;
             files::note_input(picture)?;
-            let missing = outputs.iter().enumerate().filter(|(i, _)| !is_made(*i));
-            missing.map(|(_, output)| output).try_for_each(|output| {
+            for (output, _) in outputs.iter().zip(&made).filter(|(_, made)| !**made) {
                 make_folder_of(output)?;
-                files::check_output(output)
-            })
+                files::check_output(output)?;
+            }
+            Ok(())
         };
         match check() {
-            Ok(()) => work.bake(picture, &outputs, is_made, &mut batch, console),
+            Ok(()) => work.bake(picture, &outputs, |i| made[i], &mut batch, console),
             Err(failure) => batch.add_failure(picture, failure),
         }
     });

@@ -58,14 +58,13 @@ impl Repairer<'_> {
             std::mem::replace(texel, repaired) != repaired
         };
         let texels = rgb.par_iter_mut().with_min_len(REPAIRED_TOGETHER);
-        let count = match alpha {
-            Some(alpha) => texels
-                .zip(alpha)
-                .filter_map(|(rgb, a)| (changed(rgb) | made_finite(a)).then_some(()))
-                .count(),
-            None => texels.filter_map(|rgb| changed(rgb).then_some(())).count(),
-        };
-        count as u64
+        match alpha {
+            Some(alpha) => {
+                let each = texels.zip(alpha);
+                each.map(|(rgb, alpha)| u64::from(changed(rgb) | made_finite(alpha))).sum()
+            }
+            None => texels.map(|rgb| u64::from(changed(rgb))).sum(),
+        }
     }
 
     fn color(&self, rgb: [f32; 3]) -> [f32; 3] {

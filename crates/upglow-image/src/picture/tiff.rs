@@ -431,11 +431,11 @@ fn stated_color(fields: &mut Fields, number: Number) -> Result<StatedColor, Pict
             (&[x, y], &[rx, ry, gx, gy, bx, by]) => {
                 stated("primaries and white", [[rx, ry], [gx, gy], [bx, by]], [x, y])
             }
-            (white, primaries) => {
-                let counts = [primaries.len(), white.len()];
-                let [primaries, white] = counts;
-                Stated::Unread(format!("primaries of {primaries} and a white of {white} numbers"))
-            }
+            (white, primaries) => Stated::Unread(format!(
+                "primaries of {} and a white of {} numbers",
+                primaries.len(),
+                white.len()
+            )),
         },
         _ => Stated::No,
     };
